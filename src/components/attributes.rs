@@ -1,0 +1,81 @@
+//! Attributes that a field carries in its reflection: what a reader of scenes checks and an inspector shows.
+
+use bevy_reflect::{Reflect, reflect_trait};
+
+/// The closed range that a number, or each part of a vector, must lie in.
+///
+/// ```
+/// use bevy_reflect::Reflect;
+/// use tyndall::components::Range;
+///
+/// #[derive(Reflect)]
+/// struct Fog {
+///     #[reflect(@Range::new(0.0, 1.0))]
+///     density: f32,
+/// }
+/// ```
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// The least value allowed.
+    pub min: f64,
+    /// The greatest value allowed.
+    pub max: f64,
+    /// Whether `min` itself is refused.
+    pub above_min: bool,
+}
+
+impl Range {
+    /// From `min` to `max`, both allowed.
+    pub const fn new(min: f64, max: f64) -> Self {
+        Self { min, max, above_min: false }
+    }
+
+    /// Zero and everything above.
+    pub const fn non_negative() -> Self {
+        Self::new(0.0, f64::MAX)
+    }
+
+    /// Everything above zero.
+    pub const fn positive() -> Self {
+        Self { min: 0.0, max: f64::MAX, above_min: true }
+    }
+
+    /// Whether `value` is allowed. NaN never is.
+    pub fn contains(&self, value: f64) -> bool {
+        value <= self.max && if self.above_min { value > self.min } else { value >= self.min }
+    }
+}
+
+impl std::fmt::Display for Range {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match (self.above_min, self.max == f64::MAX) {
+            (true, true) => write!(f, "above {}", self.min),
+            (false, true) => write!(f, "at least {}", self.min),
+            (true, false) => write!(f, "above {} and at most {}", self.min, self.max),
+            (false, false) => write!(f, "from {} to {}", self.min, self.max),
+        }
+    }
+}
+
+/// The unit of a field, for people: `"mm"`, `"degrees"`.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+pub struct Unit(pub &'static str);
+
+/// Marks a field of an enum variant that has no default and must be written.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+pub struct Required;
+
+/// Marks an enum whose variants are written without their names: a unit variant by its bare word, a variant with one field by the
+/// value alone. Of several such variants the first that fits is taken.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+pub struct Untagged;
+
+/// Checks that concern several fields of a value together.
+///
+/// Implement it and write `#[reflect(Validate)]` on the type; the reader of scenes calls it after the fields are read.
+#[reflect_trait]
+pub trait Validate {
+    /// What is wrong: the name of the field at fault (empty for the whole value), and a sentence that says what was expected
+    /// and what was found.
+    fn problems(&self) -> Vec<(&'static str, String)>;
+}

@@ -1,0 +1,72 @@
+use super::{AssetPath, Placement, Range, Transform, Unit};
+use bevy_ecs::prelude::*;
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+use glam::{Vec2, Vec3};
+
+/// The shape of a surface.
+///
+/// | variant | fields | range | default |
+/// |---|---|---|---|
+/// | `File(path)` | a Wavefront OBJ file | – | – |
+/// | `Sphere` | `radius`, scene units; `subdivisions` of an icosahedron | above 0; 0 to 8 | 1.0; 5 |
+/// | `Box` | `size` along x, y and z, scene units | above 0 | (1, 1, 1) |
+/// | `Plane` | `size` along x and z, scene units; it faces +y | above 0 | (1, 1) |
+/// | `CornellBox` | a room of side 2 about the origin, open towards +z | – | – |
+///
+/// ```ron
+/// Mesh: File("../assets/knot.obj")
+/// Mesh: Sphere(radius: 2.0)
+/// ```
+#[derive(Component, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Component, Default, PartialEq)]
+#[require(Transform, Placement)]
+pub enum Mesh {
+    /// Read from a Wavefront OBJ file.
+    File(AssetPath),
+    /// A sphere about the origin.
+    Sphere {
+        /// Scene units.
+        #[reflect(default = "one", @Range::positive(), @Unit("scene units"))]
+        radius: f32,
+        /// How often the twenty faces of the icosahedron are quartered.
+        #[reflect(default = "five", @Range::new(0.0, 8.0))]
+        subdivisions: u32,
+    },
+    /// A box about the origin.
+    Box {
+        /// Scene units along x, y and z.
+        #[reflect(default = "ones", @Range::positive(), @Unit("scene units"))]
+        size: Vec3,
+    },
+    /// A rectangle in the plane y = 0 that faces +y.
+    Plane {
+        /// Scene units along x and z.
+        #[reflect(default = "one_by_one", @Range::positive(), @Unit("scene units"))]
+        size: Vec2,
+    },
+    /// Floor, ceiling, back and side walls of a room of side 2 about the origin.
+    CornellBox,
+}
+
+impl Default for Mesh {
+    fn default() -> Self {
+        Self::Sphere { radius: one(), subdivisions: five() }
+    }
+}
+
+fn one() -> f32 {
+    1.0
+}
+
+fn five() -> u32 {
+    5
+}
+
+fn ones() -> Vec3 {
+    Vec3::ONE
+}
+
+fn one_by_one() -> Vec2 {
+    Vec2::ONE
+}
+

@@ -1,0 +1,52 @@
+//! What a scene is: plain data, no GPU.
+//!
+//! Every type here is reflected, so it is written in RON by its short name with its fields (`Phong: (shininess: 60.0)`), is validated by
+//! the attributes on its fields ([`Range`]) and, where fields depend on each other, by [`Validate`]. Fields that are left out
+//! take the values of the type's `Default`.
+
+mod asset_path;
+mod attributes;
+mod auto;
+mod directional_light;
+mod mesh;
+mod phong;
+mod ray_cast;
+mod scene_settings;
+mod shading;
+mod transfer_function;
+mod transform;
+mod view_camera;
+mod volume;
+mod volume_lighting;
+
+pub use asset_path::AssetPath;
+pub use attributes::{Range, ReflectValidate, Required, Unit, Untagged, Validate};
+pub use auto::Auto;
+pub use directional_light::DirectionalLight;
+pub use mesh::Mesh;
+pub use phong::Phong;
+pub use ray_cast::RayCast;
+pub use scene_settings::SceneSettings;
+pub use shading::Shading;
+pub use transfer_function::{Classification, ControlPoint, IsoValue, TransferFunction};
+pub use transform::{Motion, Placement, Scale, Transform};
+pub use view_camera::{Projection, ViewCamera};
+pub use volume::{Endian, SampleFormat, Volume};
+pub use volume_lighting::VolumeLighting;
+
+use bevy_app::App;
+
+/// Registers every component above, which makes it writable in scene files.
+pub(crate) fn register(app: &mut App) {
+    app.register_type::<DirectionalLight>()
+        .register_type::<Mesh>()
+        .register_type::<Phong>()
+        .register_type::<RayCast>()
+        .register_type::<SceneSettings>()
+        .register_type::<Shading>()
+        .register_type::<TransferFunction>()
+        .register_type::<Transform>()
+        .register_type::<ViewCamera>()
+        .register_type::<Volume>()
+        .register_type::<VolumeLighting>();
+}

@@ -1,0 +1,32 @@
+use super::{Range, Shading, Unit};
+use bevy_ecs::prelude::*;
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+use glam::Vec3;
+
+/// The head of a scene: what holds for all of it.
+///
+/// | field | type | unit | range | default |
+/// |---|---|---|---|---|
+/// | `millimetres_per_unit` | number | mm per scene unit | 1e-9 to 1e9 | 1.0 |
+/// | `background` | RGB | radiance | at least 0 | (0, 0, 0) |
+/// | `shading` | `Scattering` or `Local` | – | – | `Scattering` |
+///
+/// The spacing of volumes and the coefficients of media are per millimetre, whatever the unit of the scene is.
+#[derive(Resource, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Default, PartialEq)]
+pub struct SceneSettings {
+    /// How long a scene unit is.
+    #[reflect(@Range::new(1e-9, 1e9), @Unit("mm"))]
+    pub millimetres_per_unit: f32,
+    /// Radiance where a ray meets nothing.
+    #[reflect(@Range::non_negative())]
+    pub background: Vec3,
+    /// The shading of entities that say nothing of their own.
+    pub shading: Shading,
+}
+
+impl Default for SceneSettings {
+    fn default() -> Self {
+        Self { millimetres_per_unit: 1.0, background: Vec3::ZERO, shading: Shading::default() }
+    }
+}

@@ -1,0 +1,128 @@
+use super::{Auto, Range, Unit, Validate, attributes::ReflectValidate};
+use bevy_ecs::prelude::*;
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+use glam::{Vec2, Vec3};
+
+/// What the values of a volume look like: colour and opacity of each.
+///
+/// | field | type | unit | range | default |
+/// |---|---|---|---|---|
+/// | `domain` | `Auto` or (low, high) | data values | low below high | `Auto`: the range of an integer format, or of the data |
+/// | `points` | list of (position, (r, g, b), opacity) | position 0..1 in the domain | sorted; opacity 0 to 1 | a ramp from clear to white |
+/// | `iso` | list of (value, width, color, absorption) | data values; per `opacity_length` | – | none |
+/// | `entries` | entries of the lookup table | – | 2 to 16,384 | 1024 |
+/// | `classification` | `Post` | – | – | `Post` |
+/// | `opacity_length` | `Auto` or a length | mm | above 0 | `Auto`: one voxel of the shortest spacing |
+///
+/// Between points colour and opacity are linear; beyond the first and last they are constant. An opacity holds over
+/// `opacity_length`: a slab of that thickness absorbs this share, whatever the step of the ray is. So the extinction per millimetre
+/// is -ln(1 - opacity) / opacity_length; an opacity of 1 counts as one minus 2^-24.
+///
+/// Each `iso` value adds a tent of extinction `absorption` / `opacity_length` at its peak that is `width` wide at half its height.
+/// Where several overlap, or lie over `points`, extinctions add and colours mix in proportion to them. With `iso` and no `points`
+/// written, the points are left out.
+///
+/// Like every component it can be kept in a file of its own: `TransferFunction: File("transfer_functions/bone.ron")`.
+///
+/// ```ron
+/// TransferFunction: (domain: (0.0, 255.0), points: [(0.0, (0.0, 0.0, 0.0), 0.0), (1.0, (0.9, 0.8, 0.6), 0.6)])
+/// TransferFunction: (iso: [(value: 0.0, width: 0.02, color: (1.0, 0.8, 0.0), absorption: 1.0)])
+/// ```
+#[derive(Component, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Component, Default, PartialEq, Validate)]
+pub struct TransferFunction {
+    /// The data values at positions 0 and 1.
+    pub domain: Auto<Vec2>,
+    /// Colour and opacity at some positions.
+    pub points: Vec<ControlPoint>,
+    /// Level sets shown on top.
+    pub iso: Vec<IsoValue>,
+    /// Entries of the lookup table.
+    #[reflect(@Range::new(2.0, 16_384.0))]
+    pub entries: u32,
+    /// When the function is applied.
+    pub classification: Classification,
+    /// The thickness over which an opacity holds.
+    #[reflect(@Range::positive(), @Unit("mm"))]
+    pub opacity_length: Auto<f32>,
+}
+
+impl Default for TransferFunction {
+    fn default() -> Self {
+        Self {
+            domain: Auto::Auto,
+            points: Vec::new(),
+            iso: Vec::new(),
+            entries: 1024,
+            classification: Classification::Post,
+            opacity_length: Auto::Auto,
+        }
+    }
+}
+
+impl TransferFunction {
+    /// The points in force: those written, or a ramp from clear to white where neither points nor iso values are.
+    pub fn points_in_force(&self) -> Vec<ControlPoint> {
+        if !self.points.is_empty() || !self.iso.is_empty() {
+            return self.points.clone();
+        }
+        vec![ControlPoint(0.0, Vec3::ZERO, 0.0), ControlPoint(1.0, Vec3::ONE, 0.1)]
+    }
+}
+
+impl Validate for TransferFunction {
+    fn problems(&self) -> Vec<(&'static str, String)> {
+        let mut problems = Vec::new();
+        if let Auto::Value(domain) = self.domain
+            && domain.x >= domain.y
+        {
+            problems.push(("domain", format!("a domain goes from a lower to a higher value, found {domain}")));
+        }
+        if let Some(pair) = self.points.windows(2).find(|pair| pair[0].0 > pair[1].0) {
+            problems.push(("points", format!("points must be sorted by position, found {} after {}", pair[1].0, pair[0].0)));
+        }
+        problems
+    }
+}
+
+/// Position (0 to 1 in the domain), colour (RGB, emitted radiance at full opacity) and opacity (0 to 1).
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Default, PartialEq)]
+pub struct ControlPoint(
+    #[reflect(@Range::new(0.0, 1.0))] pub f32,
+    #[reflect(@Range::non_negative())] pub Vec3,
+    #[reflect(@Range::new(0.0, 1.0))] pub f32,
+);
+
+/// A level set of the field, shown as a thin layer.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Default, PartialEq)]
+pub struct IsoValue {
+    /// The level.
+    #[reflect(@Unit("data values"))]
+    pub value: f32,
+    /// Thickness of the layer at half its height.
+    #[reflect(@Range::positive(), @Unit("data values"))]
+    pub width: f32,
+    /// Emitted radiance at full opacity.
+    #[reflect(@Range::non_negative())]
+    pub color: Vec3,
+    /// Peak optical depth over `opacity_length`.
+    #[reflect(@Range::non_negative())]
+    pub absorption: f32,
+}
+
+impl Default for IsoValue {
+    fn default() -> Self {
+        Self { value: 0.0, width: 0.02, color: Vec3::new(1.0, 0.8, 0.0), absorption: 1.0 }
+    }
+}
+
+/// When the transfer function is applied.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Default, PartialEq)]
+pub enum Classification {
+    /// To the interpolated value at each sample.
+    #[default]
+    Post,
+}

@@ -1,0 +1,96 @@
+//! Where an entity is: as written, as moved by animation, and the product of the two.
+
+use super::attributes::{ReflectValidate, Untagged, Validate};
+use bevy_ecs::prelude::*;
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+use glam::{DAffine3, DQuat, EulerRot, Vec3};
+
+/// Position, orientation and size of an entity, as written.
+///
+/// | field | type | unit | range | default |
+/// |---|---|---|---|---|
+/// | `translation` | vector | scene units | finite | (0, 0, 0) |
+/// | `rotation` | angles about the fixed x, then y, then z axis | degrees | finite | (0, 0, 0) |
+/// | `scale` | a number or (x, y, z) | – | not 0 | 1.0 |
+///
+/// Scale is applied first, then rotation, then translation.
+///
+/// ```ron
+/// Transform: (translation: (-1.0, 0.0, 0.0), rotation: (0.0, 30.0, 0.0), scale: 8.0)
+/// ```
+#[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
+#[reflect(Component, Default, PartialEq, Validate)]
+#[require(Placement)]
+pub struct Transform {
+    /// Scene units.
+    #[reflect(@super::Unit("scene units"))]
+    pub translation: Vec3,
+    /// Degrees about the fixed x, then y, then z axis.
+    #[reflect(@super::Unit("degrees"))]
+    pub rotation: Vec3,
+    /// Factor along the entity's own axes.
+    pub scale: Scale,
+}
+
+impl Transform {
+    /// The matrix that takes the entity's space to the scene's, in double precision.
+    pub fn scene_from_entity(&self) -> DAffine3 {
+        let angles = self.rotation.as_dvec3() * std::f64::consts::PI / 180.0;
+        let rotation = DQuat::from_euler(EulerRot::XYZEx, angles.x, angles.y, angles.z);
+        DAffine3::from_scale_rotation_translation(self.scale.xyz().as_dvec3(), rotation, self.translation.as_dvec3())
+    }
+}
+
+impl Validate for Transform {
+    fn problems(&self) -> Vec<(&'static str, String)> {
+        let scale = self.scale.xyz();
+        if scale.cmpne(Vec3::ZERO).all() {
+            return Vec::new();
+        }
+        vec![("scale", format!("a scale must not be 0, which would leave nothing to see; found {scale}"))]
+    }
+}
+
+/// A scale factor along each axis, in RON one number for all three or `(x, y, z)`.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Default, PartialEq, @Untagged)]
+pub enum Scale {
+    /// The same along all axes.
+    Uniform(f32),
+    /// Along x, y and z.
+    PerAxis(Vec3),
+}
+
+impl Default for Scale {
+    fn default() -> Self {
+        Self::Uniform(1.0)
+    }
+}
+
+impl Scale {
+    /// The factors along x, y and z.
+    pub fn xyz(self) -> Vec3 {
+        match self {
+            Self::Uniform(factor) => Vec3::splat(factor),
+            Self::PerAxis(factors) => factors,
+        }
+    }
+}
+
+/// How an animation moves an entity beyond its [`Transform`]. Systems in [`Stage::Animate`](crate::Stage::Animate) write it.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
+#[require(Placement)]
+pub struct Motion(pub DAffine3);
+
+/// Where the entity is now: its [`Motion`] after its [`Transform`]. Derived in [`Stage::Place`](crate::Stage::Place); read it, never
+/// write it.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placement(pub DAffine3);
+
+/// Derives [`Placement`], and wakes nothing where the result is the same.
+pub(crate) fn place(mut entities: Query<(Option<&Transform>, Option<&Motion>, &mut Placement), Or<(Changed<Transform>, Changed<Motion>)>>) {
+    for (transform, motion, mut placement) in &mut entities {
+        let still = transform.map_or(DAffine3::IDENTITY, Transform::scene_from_entity);
+        placement.set_if_neq(Placement(motion.map_or(DAffine3::IDENTITY, |motion| motion.0) * still));
+    }
+}

@@ -1,0 +1,96 @@
+use super::{Range, Unit, Validate, attributes::ReflectValidate};
+use crate::components::Placement;
+use bevy_ecs::prelude::*;
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+use glam::Vec3;
+
+/// Where the picture is taken from.
+///
+/// | field | type | unit | range | default |
+/// |---|---|---|---|---|
+/// | `eye` | point | scene units | not `target` | (0, 0, 4) |
+/// | `target` | point that appears in the middle | scene units | – | (0, 0, 0) |
+/// | `up` | vector that points up in the picture | – | not along the view | (0, 1, 0) |
+/// | `projection` | `Perspective(vertical_fov)` or `Orthographic(height)` | degrees; scene units | 0.01 to 179; above 0 | `Perspective(vertical_fov: 45.0)` |
+/// | `exposure` | number | EV: each step doubles the brightness | -100 to 100 | 0 |
+/// | `gamma` | encoding exponent of the PNG | – | 0.1 to 10 | 2.2 |
+///
+/// `exposure` and `gamma` concern what a person sees (window, PNG); an EXR holds the radiance as it is. A scene without a camera is
+/// seen from the front, with all of it in the picture.
+///
+/// ```ron
+/// ViewCamera: (eye: (0.0, 1.2, 4.0), target: (0.0, 0.6, 0.0), projection: Perspective(vertical_fov: 40.0))
+/// ```
+#[derive(Component, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Component, Default, PartialEq, Validate)]
+#[require(Placement)]
+pub struct ViewCamera {
+    /// Where the camera stands.
+    #[reflect(@Unit("scene units"))]
+    pub eye: Vec3,
+    /// The point in the middle of the picture.
+    #[reflect(@Unit("scene units"))]
+    pub target: Vec3,
+    /// What points up in the picture.
+    pub up: Vec3,
+    /// How the scene is projected.
+    pub projection: Projection,
+    /// Exposure value.
+    #[reflect(@Range::new(-100.0, 100.0), @Unit("EV"))]
+    pub exposure: f32,
+    /// Encoding exponent.
+    #[reflect(@Range::new(0.1, 10.0))]
+    pub gamma: f32,
+}
+
+impl Default for ViewCamera {
+    fn default() -> Self {
+        Self { eye: Vec3::new(0.0, 0.0, 4.0), target: Vec3::ZERO, up: Vec3::Y, projection: Projection::default(), exposure: 0.0, gamma: 2.2 }
+    }
+}
+
+impl Validate for ViewCamera {
+    fn problems(&self) -> Vec<(&'static str, String)> {
+        let view = (self.target.as_dvec3() - self.eye.as_dvec3()).normalize_or_zero();
+        let up = self.up.as_dvec3().normalize_or_zero();
+        if view.length_squared() == 0.0 {
+            return vec![("target", format!("the camera must look somewhere: `target` and `eye` are both {}", self.eye))];
+        }
+        if view.cross(up).length() < 1e-6 {
+            return vec![("up", format!("`up` must point across the view, found {} along it", self.up))];
+        }
+        Vec::new()
+    }
+}
+
+/// How a camera projects the scene.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Default, PartialEq)]
+pub enum Projection {
+    /// Rays leave the eye in all directions.
+    Perspective {
+        /// Angle between the bottom and the top of the picture.
+        #[reflect(default = "default_vertical_fov", @Range::new(0.01, 179.0), @Unit("degrees"))]
+        vertical_fov: f32,
+    },
+    /// Rays are parallel and start in the plane through the eye.
+    Orthographic {
+        /// Height of the picture in the scene.
+        #[reflect(default = "default_height", @Range::positive(), @Unit("scene units"))]
+        height: f32,
+    },
+}
+
+impl Default for Projection {
+    fn default() -> Self {
+        Self::Perspective { vertical_fov: default_vertical_fov() }
+    }
+}
+
+fn default_vertical_fov() -> f32 {
+    45.0
+}
+
+fn default_height() -> f32 {
+    2.0
+}

@@ -1,0 +1,67 @@
+use super::{AssetPath, Placement, Range, RayCast, Required, TransferFunction, Transform, Unit, VolumeLighting};
+use bevy_ecs::prelude::*;
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+use glam::{UVec3, Vec3};
+
+pub use crate::sources::{Endian, SampleFormat};
+
+/// A scalar field on a regular grid, centred on the entity's origin.
+///
+/// | field of `Raw` | type | unit | range | default |
+/// |---|---|---|---|---|
+/// | `path` | file; a name that ends in `.gz` is unpacked | – | – | – |
+/// | `size` | voxels along x, y, z; x varies fastest in the file | voxels | at least 1 | – |
+/// | `format` | `U8`, `I8`, `U16`, `I16` or `F32` | – | – | `U8` |
+/// | `endian` | `Little` or `Big` | – | – | `Little` |
+/// | `spacing` | distance of voxel centres | mm | above 0 | (1, 1, 1) |
+/// | `skip_bytes` | length of a header in front of the samples | bytes | – | 0 |
+///
+/// A voxel is a cell around its sample, so the volume is `size * spacing` millimetres long. Between samples the field is trilinear;
+/// in the half voxel at the border it is constant. Samples that are not finite are counted, reported and drawn as transparent.
+///
+/// ```ron
+/// Volume: Raw(path: "../assets/bonsai.raw", size: (256, 256, 256), format: U8, spacing: (0.08, 0.08, 0.08))
+/// ```
+#[derive(Component, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Component, Default, PartialEq)]
+#[require(Transform, Placement, TransferFunction, VolumeLighting, RayCast)]
+pub enum Volume {
+    /// Bare samples, as they stand in memory.
+    Raw {
+        /// The file.
+        #[reflect(@Required)]
+        path: AssetPath,
+        /// Voxels along x, y and z.
+        #[reflect(@Required, @Range::new(1.0, u32::MAX as f64), @Unit("voxels"))]
+        size: UVec3,
+        /// Type of a sample.
+        #[reflect(default)]
+        format: SampleFormat,
+        /// Byte order of a sample.
+        #[reflect(default)]
+        endian: Endian,
+        /// Distance of voxel centres.
+        #[reflect(default = "one_millimetre", @Range::positive(), @Unit("mm"))]
+        spacing: Vec3,
+        /// Length of the header.
+        #[reflect(default, @Unit("bytes"))]
+        skip_bytes: u64,
+    },
+}
+
+impl Default for Volume {
+    fn default() -> Self {
+        Self::Raw {
+            path: AssetPath::default(),
+            size: UVec3::ONE,
+            format: SampleFormat::default(),
+            endian: Endian::default(),
+            spacing: one_millimetre(),
+            skip_bytes: 0,
+        }
+    }
+}
+
+fn one_millimetre() -> Vec3 {
+    Vec3::ONE
+}

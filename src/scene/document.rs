@@ -1,0 +1,329 @@
+//! A scene as its files say it: every value with its place, nothing in the world yet.
+
+use super::edit;
+use super::names::suggestion;
+use super::parts::{Named, Part};
+use super::problem::{Place, Problem, Severity, SourceFile};
+use super::reader::Reader;
+use crate::components::{AssetPath, SceneSettings};
+use bevy_ecs::reflect::ReflectComponent;
+use bevy_reflect::{Reflect, TypeInfo, TypeRegistration, TypeRegistry, structs::Struct};
+use std::any::TypeId;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A component of an entity as read.
+pub struct SceneComponent {
+    /// The name that it is written by.
+    pub name: String,
+    /// Its type.
+    pub type_id: TypeId,
+    /// Its value, with defaults for what is not written.
+    pub value: Box<dyn Reflect>,
+}
+
+/// An entity as read.
+pub struct SceneEntity {
+    /// Its name, which is its identity.
+    pub name: String,
+    /// Its components, in the order in which they are written.
+    pub components: Vec<SceneComponent>,
+    /// Where its name stands.
+    pub place: Place,
+    /// Where each value stands, by its path: `Mesh`, `Mesh.radius`, `TransferFunction.points[2]`.
+    places: HashMap<String, Place>,
+}
+
+impl SceneEntity {
+    /// Whether the value at `path` stands in a file, as opposed to being a default.
+    pub fn is_written(&self, path: &str) -> bool {
+        self.places.contains_key(path)
+    }
+
+    /// Where the value at `path` stands; where it is not written, the nearest thing around it that is.
+    pub fn place_of(&self, path: &str) -> Place {
+        let mut path = path;
+        loop {
+            if let Some(place) = self.places.get(path) {
+                return place.clone();
+            }
+            match path.rfind(['.', '[']) {
+                Some(end) => path = &path[..end],
+                None => return self.place.clone(),
+            }
+        }
+    }
+}
+
+/// `entity.Component.field=VALUE`, or `field=VALUE` for the head of the scene: replaces what a file says.
+#[derive(Clone, Debug)]
+pub struct Override {
+    /// What is to be replaced.
+    pub path: String,
+    /// The RON text to put there.
+    pub value: String,
+}
+
+impl std::str::FromStr for Override {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (path, value) = text.split_once('=').ok_or("expected entity.Component.field=VALUE, found no `=`")?;
+        Ok(Self { path: path.trim().into(), value: value.trim().into() })
+    }
+}
+
+/// All that the files of a scene say.
+#[derive(Default)]
+pub struct SceneDocument {
+    /// The head.
+    pub settings: SceneSettings,
+    /// The entities, in the order in which they are written, those of included files first.
+    pub entities: Vec<SceneEntity>,
+    /// Every file that was read: the scene, what it includes, components kept in files of their own.
+    pub files: Vec<PathBuf>,
+    /// What is wrong. With errors among them the document is not fit to be shown.
+    pub problems: Vec<Problem>,
+    /// Where the head's fields stand.
+    head: HashMap<String, Place>,
+}
+
+impl SceneDocument {
+    /// Reads the scene at `path` and all that it includes, with `overrides` in force.
+    pub fn load(path: &Path, registry: &TypeRegistry, overrides: &[Override]) -> Self {
+        let mut texts = HashMap::new();
+        let mut document = Self::load_with(path, registry, &texts);
+        for change in overrides {
+            if document.has_errors() {
+                break;
+            }
+            match edit::apply(&document, change, registry) {
+                Ok((file, text)) => {
+                    texts.insert(file, text);
+                    document = Self::load_with(path, registry, &texts);
+                }
+                Err(problem) => document.problems.push(*problem),
+            }
+        }
+        document
+    }
+
+    /// Whether anything keeps the scene from being shown.
+    pub fn has_errors(&self) -> bool {
+        self.problems.iter().any(|problem| problem.severity == Severity::Error)
+    }
+
+    /// The entity of this name.
+    pub fn entity(&self, name: &str) -> Option<&SceneEntity> {
+        self.entities.iter().find(|entity| entity.name == name)
+    }
+
+    /// Where a field of the head stands; `""` is the head itself.
+    pub(super) fn head_place(&self, field: &str) -> Option<&Place> {
+        self.head.get(field)
+    }
+
+    fn load_with(path: &Path, registry: &TypeRegistry, texts: &HashMap<PathBuf, String>) -> Self {
+        let mut loader = Loader { registry, texts, document: Self::default(), settings: SceneSettings::default() };
+        loader.file(path, None, true);
+        let mut document = loader.document;
+        document.settings = loader.settings;
+        document
+    }
+}
+
+struct Loader<'a> {
+    registry: &'a TypeRegistry,
+    /// Texts that stand in for what is on disk.
+    texts: &'a HashMap<PathBuf, String>,
+    document: SceneDocument,
+    settings: SceneSettings,
+}
+
+impl<'a> Loader<'a> {
+    /// Reads a scene file: the scene itself (`main`) or one that it includes.
+    fn file(&mut self, path: &Path, named_at: Option<&Place>, main: bool) {
+        let Some(file) = self.text(path, named_at) else { return };
+        let mut reader = Reader::new(self.registry, file.clone());
+        let whole = Part::whole(file.text());
+        match whole.fields() {
+            Ok(fields) => {
+                if main {
+                    self.document.head.insert(String::new(), reader.place(&whole));
+                }
+                for Named { name, value } in fields {
+                    self.head_field(&mut reader, &name, &value, main);
+                }
+            }
+            Err(misfit) => reader.report_misfit(misfit),
+        }
+        self.document.problems.append(&mut reader.problems);
+    }
+
+    fn head_field(&mut self, reader: &mut Reader, name: &Part, value: &Part, main: bool) {
+        match name.text {
+            "entities" => self.entities(reader, value),
+            "include" => self.includes(reader, value),
+            field if main && SETTINGS.contains(&field) => self.setting(reader, field, value),
+            field if SETTINGS.contains(&field) => {
+                let problem = Problem::error(format!("`{field}` belongs in the head of the scene, not in a file that it includes"));
+                reader.report(name, problem);
+            }
+            other => {
+                let mut known = SETTINGS.to_vec();
+                known.extend(["include", "entities"]);
+                let problem = Problem::error(format!("a scene has no field `{other}`")).label("unknown field");
+                reader.report(name, problem.help(suggestion(other, &known)));
+            }
+        }
+    }
+
+    fn setting(&mut self, reader: &mut Reader, name: &str, part: &Part) {
+        self.document.head.insert(name.into(), reader.place(part));
+        let registration = self.registry.get(TypeId::of::<SceneSettings>());
+        let Some(TypeInfo::Struct(info)) = registration.map(TypeRegistration::type_info) else { return };
+        let Some(field) = info.field(name) else { return };
+        let Some(registration) = self.registry.get(field.type_id()) else { return };
+        let range = field.get_attribute();
+        if let Some(value) = reader.value_at(name, part, registration, range)
+            && let Some(target) = self.settings.field_mut(name)
+        {
+            target.apply(value.as_ref());
+        }
+    }
+
+    fn includes(&mut self, reader: &mut Reader, part: &Part) {
+        let Some(registration) = self.registry.get(TypeId::of::<AssetPath>()) else { return };
+        let elements = match part.elements() {
+            Ok(elements) => elements,
+            Err(misfit) => return reader.report_misfit(misfit),
+        };
+        for element in elements {
+            let Some(value) = reader.value_at("include", &element, registration, None) else { continue };
+            let Some(path) = value.try_downcast_ref::<AssetPath>().map(|path| path.path().to_owned()) else { continue };
+            if !self.document.files.contains(&path) {
+                self.file(&path, Some(&reader.place(&element)), false);
+            }
+        }
+    }
+
+    fn entities(&mut self, reader: &mut Reader, part: &Part) {
+        let entries = match part.entries() {
+            Ok(entries) => entries,
+            Err(misfit) => return reader.report_misfit(misfit),
+        };
+        self.document.head.entry("entities".into()).or_insert_with(|| reader.place(part));
+        for Named { name, value } in entries {
+            let place = reader.place(&name);
+            let name = match name.read(std::marker::PhantomData::<String>) {
+                Ok(text) => text,
+                Err(misfit) => {
+                    reader.report_misfit(misfit);
+                    continue;
+                }
+            };
+            if let Some(first) = self.document.entity(&name) {
+                let elsewhere = first.place.to_string();
+                let other = Some((first.place.clone(), "first here".into()));
+                let problem = Problem::error(format!("two entities are called `{name}`")).label("again here").at(place);
+                reader.problems.push(Problem { other, ..problem.help(format!("the first stands at {elsewhere}; a name is an identity")) });
+                continue;
+            }
+            let entity = self.entity(reader, name, place, &value);
+            self.document.entities.push(entity);
+        }
+    }
+
+    fn entity(&mut self, reader: &mut Reader, name: String, place: Place, part: &Part) -> SceneEntity {
+        let mut entity = SceneEntity { name, components: Vec::new(), place, places: HashMap::new() };
+        let fields = match part.fields() {
+            Ok(fields) => fields,
+            Err(misfit) => {
+                reader.report_misfit(misfit);
+                return entity;
+            }
+        };
+        entity.places.insert(String::new(), reader.place(part));
+        for Named { name, value } in fields {
+            let Some(registration) = self.component_type(reader, &name) else { continue };
+            if entity.components.iter().any(|component| component.type_id == registration.type_id()) {
+                reader.report(&name, Problem::error(format!("`{}` is written twice on `{}`", name.text, entity.name)));
+                continue;
+            }
+            let value = self.component(reader, name.text, &value, registration);
+            entity.places.extend(reader.places.drain(..));
+            if let Some(value) = value {
+                entity.components.push(SceneComponent { name: name.text.into(), type_id: registration.type_id(), value });
+            }
+        }
+        entity
+    }
+
+    /// Reads a component, from its own file where it is written as `File("…")` and the type has no such kind itself.
+    fn component(&mut self, reader: &mut Reader, name: &str, part: &Part, registration: &TypeRegistration) -> Option<Box<dyn Reflect>> {
+        let has_own_files = matches!(registration.type_info(), TypeInfo::Enum(info) if info.contains_variant("File"));
+        let file_part = if has_own_files { None } else { edit::file_path(part) };
+        let Some(path_part) = file_part else { return reader.complete(part, registration, name) };
+        let path_type = self.registry.get(TypeId::of::<AssetPath>())?;
+        let path = reader.value_at(name, &path_part, path_type, None)?;
+        let path = path.try_downcast_ref::<AssetPath>()?.path().to_owned();
+        let file = self.text(&path, Some(&reader.place(&path_part)))?;
+        let mut own = Reader::new(self.registry, file.clone());
+        let value = own.complete(&Part::whole(file.text()).trimmed(), registration, name);
+        reader.places.append(&mut own.places);
+        reader.problems.append(&mut own.problems);
+        value
+    }
+
+    fn component_type(&self, reader: &mut Reader, name: &Part) -> Option<&'a TypeRegistration> {
+        let found = self.registry.get_with_short_type_path(name.text);
+        if let Some(registration) = found.filter(|registration| registration.data::<ReflectComponent>().is_some()) {
+            return Some(registration);
+        }
+        let components = self.registry.iter().filter(|registration| registration.data::<ReflectComponent>().is_some());
+        let mut known: Vec<_> = components.map(|registration| registration.type_info().type_path_table().short_path()).collect();
+        known.sort_unstable();
+        let problem = if self.registry.is_ambiguous(name.text) {
+            Problem::error(format!("more than one plugin has a component `{}`", name.text)).label("ambiguous")
+        } else {
+            Problem::error(format!("there is no component `{}`", name.text)).label("unknown component").help(suggestion(name.text, &known))
+        };
+        reader.report(name, problem);
+        None
+    }
+
+    fn text(&mut self, path: &Path, named_at: Option<&Place>) -> Option<Arc<SourceFile>> {
+        self.document.files.push(path.to_owned());
+        if let Some(text) = self.texts.get(path) {
+            return Some(SourceFile::new(path, text.as_str()));
+        }
+        let problem = match read_text(path) {
+            Ok(text) => return Some(SourceFile::new(path, text)),
+            Err(problem) => problem,
+        };
+        self.document.problems.push(problem.at_maybe(named_at.cloned()));
+        None
+    }
+}
+
+/// The fields of [`SceneSettings`].
+pub(super) const SETTINGS: [&str; 3] = ["millimetres_per_unit", "background", "shading"];
+
+/// A scene is written by hand; what is larger is not one.
+const MAX_SCENE_BYTES: u64 = 64 << 20;
+
+fn read_text(path: &Path) -> Result<String, Problem> {
+    use std::io::Read;
+    let unreadable = |error: std::io::Error| Problem::error(format!("cannot read {}: {error}", path.display()));
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(unreadable)?;
+    file.take(MAX_SCENE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > MAX_SCENE_BYTES {
+        return Err(Problem::error(format!("{} is longer than {MAX_SCENE_BYTES} bytes: is it a scene?", path.display())));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let place = error.utf8_error().valid_up_to();
+        Problem::error(format!("{} is not UTF-8 text (byte {place})", path.display())).help("save it as UTF-8")
+    })
+}

@@ -1,0 +1,33 @@
+//! Finding what a misspelt name was meant to be.
+
+/// The candidate nearest to `name`, if one is near enough to be meant.
+pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let wanted = name.to_lowercase();
+    candidates
+        .into_iter()
+        .map(|candidate| (strsim::damerau_levenshtein(&wanted, &candidate.to_lowercase()), candidate))
+        .filter(|(distance, candidate)| *distance <= 1 + candidate.chars().count() / 3)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
+}
+
+/// "did you mean `x`?" where something is near, else the list of all that would do.
+pub(super) fn suggestion<'a>(name: &str, candidates: &[&'a str]) -> String {
+    match nearest(name, candidates.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None if candidates.is_empty() => "nothing is known here".into(),
+        None => format!("known here: {}", candidates.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_of_the_finger_is_understood() {
+        assert_eq!(nearest("difuse", ["ambient", "diffuse"]), Some("diffuse"));
+        assert_eq!(nearest("phong", ["Phong", "Mesh"]), Some("Phong"));
+        assert_eq!(nearest("sigma", ["ambient", "diffuse"]), None);
+    }
+}

@@ -1,0 +1,400 @@
+//! RON parts become reflected values, by the types that the registry knows.
+
+use super::names::suggestion;
+use super::parts::{Misfit, Named, Part, Payload, Shape};
+use super::problem::{Place, Problem, SourceFile};
+use crate::components::{AssetPath, Range, ReflectValidate, Required, Untagged};
+use bevy_reflect::enums::{DynamicEnum, DynamicVariant, EnumInfo, VariantInfo};
+use bevy_reflect::list::DynamicList;
+use bevy_reflect::serde::TypedReflectDeserializer;
+use bevy_reflect::structs::DynamicStruct;
+use bevy_reflect::tuple::DynamicTuple;
+use bevy_reflect::tuple_struct::DynamicTupleStruct;
+use bevy_reflect::{
+    NamedField, PartialReflect, Reflect, ReflectDeserialize, ReflectFromReflect, TypeInfo, TypeRegistration, TypeRegistry,
+};
+use std::any::TypeId;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Reads the parts of one file. Problems and the places of values gather in it.
+pub(super) struct Reader<'r> {
+    pub registry: &'r TypeRegistry,
+    pub file: Arc<SourceFile>,
+    /// Every problem met so far.
+    pub problems: Vec<Problem>,
+    /// Where each value stands, by its path from the entity: `Mesh.radius`.
+    pub places: Vec<(String, Place)>,
+    /// Path of the value being read.
+    path: String,
+}
+
+/// A value that was read, unless a problem was reported in its stead.
+type Value = Option<Box<dyn PartialReflect>>;
+
+impl<'r> Reader<'r> {
+    pub fn new(registry: &'r TypeRegistry, file: Arc<SourceFile>) -> Self {
+        Self { registry, file, problems: Vec::new(), places: Vec::new(), path: String::new() }
+    }
+
+    pub fn place(&self, part: &Part) -> Place {
+        Place { file: self.file.clone(), bytes: part.bytes() }
+    }
+
+    pub fn report(&mut self, part: &Part, problem: Problem) {
+        let place = self.place(part);
+        self.problems.push(problem.at(place));
+    }
+
+    pub fn report_misfit(&mut self, misfit: Misfit) {
+        let place = Place { file: self.file.clone(), bytes: misfit.bytes };
+        self.problems.push(Problem::error(sentence(&misfit.message)).at(place));
+    }
+
+    /// Reads a whole component or other registered type, complete with the defaults of what is not written.
+    pub fn complete(&mut self, part: &Part, registration: &TypeRegistration, name: &str) -> Option<Box<dyn Reflect>> {
+        self.path = name.to_owned();
+        let before = self.problems.len();
+        let value = self.value(part, registration, None)?;
+        if self.problems.len() > before {
+            return None;
+        }
+        let whole = registration.data::<ReflectFromReflect>().and_then(|data| data.from_reflect(value.as_ref()));
+        if whole.is_none() {
+            let problem = Problem::error(format!("`{name}` is not complete: a field without a default is missing"));
+            self.report(part, problem);
+        }
+        whole
+    }
+
+    /// Reads a value that stands at `path`.
+    pub fn value_at(&mut self, path: &str, part: &Part, registration: &TypeRegistration, range: Option<&Range>) -> Value {
+        let before = self.problems.len();
+        self.path = path.to_owned();
+        self.value(part, registration, range).filter(|_| self.problems.len() == before)
+    }
+
+    /// Reads one value of a registered type. `range` is what the field that it stands in allows.
+    pub fn value(&mut self, part: &Part, registration: &TypeRegistration, range: Option<&Range>) -> Value {
+        self.places.push((self.path.clone(), self.place(part)));
+        let before = self.problems.len();
+        let value = match registration.type_info() {
+            _ if registration.data::<ReflectDeserialize>().is_some() => self.leaf(part, registration, range),
+            TypeInfo::Struct(info) => {
+                let fields = self.ok(part.fields().map_err(|misfit| describe(misfit, "`(field: value, …)`")))?;
+                let known: Vec<_> = info.iter().collect();
+                let read = self.fields(part, fields, &known, registration.type_info().type_path_table().short_path());
+                Some(Box::new(represent(read, registration.type_info())) as Box<dyn PartialReflect>)
+            }
+            TypeInfo::TupleStruct(info) => {
+                let types: Vec<_> = info.iter().map(|field| (field.type_id(), field.get_attribute::<Range>())).collect();
+                self.tuple(part, &types).map(|values| {
+                    let mut tuple = DynamicTupleStruct::default();
+                    values.into_iter().for_each(|value| tuple.insert_boxed(value));
+                    tuple.set_represented_type(Some(registration.type_info()));
+                    Box::new(tuple) as Box<dyn PartialReflect>
+                })
+            }
+            TypeInfo::Tuple(info) => {
+                let types: Vec<_> = info.iter().map(|field| (field.type_id(), range)).collect();
+                self.tuple(part, &types).map(|values| {
+                    let mut tuple = DynamicTuple::default();
+                    values.into_iter().for_each(|value| tuple.insert_boxed(value));
+                    Box::new(tuple) as Box<dyn PartialReflect>
+                })
+            }
+            TypeInfo::List(info) => self.list(part, info.item_ty().id(), range),
+            TypeInfo::Enum(info) => self.enumeration(part, info, registration, range),
+            _ => self.leaf(part, registration, range),
+        };
+        if self.problems.len() == before {
+            self.validate(part, registration, value.as_deref());
+        }
+        value
+    }
+
+    /// A value that serde reads in one go: numbers, text, vectors, types with a format of their own.
+    fn leaf(&mut self, part: &Part, registration: &TypeRegistration, range: Option<&Range>) -> Value {
+        let seed = TypedReflectDeserializer::new(registration, self.registry);
+        let mut value = match part.read(seed) {
+            Ok(value) => value,
+            Err(misfit) => {
+                let problem = Problem::error(format!("expected {}, found `{}`", wanted(registration), excerpt(part.text)));
+                let detail = sentence(&misfit.message);
+                self.report(part, if is_plain(registration) { problem } else { problem.help(detail) });
+                return None;
+            }
+        };
+        if let Some(path) = value.try_downcast_mut::<AssetPath>() {
+            path.resolve(self.file.path().parent().unwrap_or(Path::new("")));
+        }
+        for number in numbers(value.as_ref()) {
+            let range = range.copied().unwrap_or(Range::new(f64::MIN, f64::MAX));
+            if !number.is_finite() || !range.contains(number) {
+                let bounds = if range.max == f64::MAX && range.min == f64::MIN { "a finite number".into() } else { range.to_string() };
+                let name = self.path.rsplit('.').next().unwrap_or_default().to_owned();
+                self.report(part, Problem::error(format!("`{name}` must be {bounds}, found {number}")).label("out of range"));
+                return None;
+            }
+        }
+        Some(value)
+    }
+
+    fn fields(&mut self, whole: &Part, written: Vec<Named>, known: &[&NamedField], owner: &str) -> DynamicStruct {
+        let mut read = DynamicStruct::default();
+        let mut seen: Vec<(&str, Place)> = Vec::new();
+        for Named { name, value } in &written {
+            let Some(field) = known.iter().find(|field| field.name() == name.text) else {
+                let names: Vec<_> = known.iter().map(|field| field.name()).collect();
+                let problem = Problem::error(format!("`{owner}` has no field `{}`", name.text)).label("unknown field");
+                self.report(name, problem.help(suggestion(name.text, &names)));
+                continue;
+            };
+            if let Some((_, first)) = seen.iter().find(|(seen, _)| *seen == name.text) {
+                let other = Some((first.clone(), "first written here".into()));
+                let problem = Problem { other, ..Problem::error(format!("`{}` is written twice", name.text)).label("again here") };
+                self.report(name, problem);
+                continue;
+            }
+            seen.push((field.name(), self.place(name)));
+            if let Some(value) = self.within(&format!(".{}", field.name()), |reader| reader.typed(value, field.type_id(), field.get_attribute::<Range>())) {
+                read.insert_boxed(field.name(), value);
+            }
+        }
+        for field in known.iter().filter(|field| field.has_attribute::<Required>()) {
+            if !seen.iter().any(|(name, _)| *name == field.name()) {
+                let problem = Problem::error(format!("`{owner}` needs `{}`, which has no default", field.name())).label("missing in here");
+                self.report(whole, problem.help(format!("write `{}: …`", field.name())));
+            }
+        }
+        read
+    }
+
+    fn tuple(&mut self, part: &Part, types: &[(TypeId, Option<&Range>)]) -> Option<Vec<Box<dyn PartialReflect>>> {
+        let parts = match part.tuple(types.len()) {
+            Ok(parts) if parts.len() == types.len() => parts,
+            Ok(parts) => {
+                self.report(part, Problem::error(format!("expected {} values in parentheses, found {}", types.len(), parts.len())));
+                return None;
+            }
+            Err(_) => {
+                let problem = Problem::error(format!("expected {} values in parentheses, found `{}`", types.len(), excerpt(part.text)));
+                self.report(part, problem);
+                return None;
+            }
+        };
+        let values: Vec<_> = parts
+            .iter()
+            .zip(types)
+            .enumerate()
+            .map(|(index, (part, (ty, range)))| self.within(&format!(".{index}"), |reader| reader.typed(part, *ty, *range)))
+            .collect();
+        values.into_iter().collect()
+    }
+
+    fn list(&mut self, part: &Part, item: TypeId, range: Option<&Range>) -> Value {
+        let elements = self.ok(part.elements().map_err(|misfit| describe(misfit, "a list `[value, …]`")))?;
+        let mut list = DynamicList::default();
+        for (index, element) in elements.iter().enumerate() {
+            if let Some(value) = self.within(&format!("[{index}]"), |reader| reader.typed(element, item, range)) {
+                list.push_box(value);
+            }
+        }
+        Some(Box::new(list))
+    }
+
+    fn enumeration(&mut self, part: &Part, info: &'static EnumInfo, registration: &TypeRegistration, range: Option<&Range>) -> Value {
+        if info.has_attribute::<Untagged>() {
+            return self.untagged(part, info, registration, range);
+        }
+        if info.type_path().starts_with("core::option::Option<") {
+            return self.option(part, info, registration, range);
+        }
+        let owner = registration.type_info().type_path_table().short_path();
+        let word = part.word();
+        let Some(variant) = word.and_then(|word| info.variant(word.text)) else {
+            let at = word.unwrap_or(*part);
+            let problem = Problem::error(format!("`{}` is not a kind of {owner}", excerpt(at.text))).label("unknown");
+            self.report(&at, problem.help(suggestion(at.text, info.variant_names())));
+            return None;
+        };
+        let shape = match variant {
+            VariantInfo::Unit(_) => Shape::Unit,
+            VariantInfo::Tuple(info) => Shape::Tuple(info.field_len()),
+            VariantInfo::Struct(_) => Shape::Struct,
+        };
+        let how = how_to_write(variant);
+        let payload = self.ok(part.payload(shape).map_err(|misfit| describe(misfit, &how)))?;
+        let variant_value = match (variant, payload) {
+            (VariantInfo::Struct(info), Payload::Fields(fields)) => {
+                let known: Vec<_> = info.iter().collect();
+                DynamicVariant::Struct(self.fields(part, fields, &known, variant.name()))
+            }
+            (VariantInfo::Tuple(info), Payload::Values(parts)) => {
+                let mut tuple = DynamicTuple::default();
+                for (index, (part, field)) in parts.iter().zip(info.iter()).enumerate() {
+                    let range = field.get_attribute::<Range>();
+                    tuple.insert_boxed(self.within(&format!(".{index}"), |reader| reader.typed(part, field.type_id(), range))?);
+                }
+                DynamicVariant::Tuple(tuple)
+            }
+            _ => DynamicVariant::Unit,
+        };
+        Some(Box::new(enum_value(variant.name(), variant_value, registration)))
+    }
+
+    /// An enum written without the names of its variants.
+    fn untagged(&mut self, part: &Part, info: &'static EnumInfo, registration: &TypeRegistration, range: Option<&Range>) -> Value {
+        if let Some(VariantInfo::Unit(unit)) = info.variant(part.text) {
+            return Some(Box::new(enum_value(unit.name(), DynamicVariant::Unit, registration)));
+        }
+        let carriers = info.iter().filter_map(|variant| match variant {
+            VariantInfo::Tuple(tuple) if tuple.field_len() == 1 => tuple.field_at(0).map(|field| (variant.name(), field)),
+            _ => None,
+        });
+        let before = (self.problems.len(), self.places.len());
+        let mut first_problems = Vec::new();
+        for (name, field) in carriers {
+            if let Some(value) = self.typed(part, field.type_id(), field.get_attribute::<Range>().or(range)) {
+                let mut tuple = DynamicTuple::default();
+                tuple.insert_boxed(value);
+                return Some(Box::new(enum_value(name, DynamicVariant::Tuple(tuple), registration)));
+            }
+            let problems = self.problems.split_off(before.0);
+            self.places.truncate(before.1);
+            if first_problems.is_empty() || problems.iter().any(|problem| problem.label == "out of range") {
+                first_problems = problems;
+            }
+        }
+        self.problems.extend(first_problems);
+        None
+    }
+
+    fn option(&mut self, part: &Part, info: &'static EnumInfo, registration: &TypeRegistration, range: Option<&Range>) -> Value {
+        let inner = self.ok(part.option().map_err(|misfit| describe(misfit, "`Some(value)` or `None`")))?;
+        let Some(inner) = inner else { return Some(Box::new(enum_value("None", DynamicVariant::Unit, registration))) };
+        let VariantInfo::Tuple(some) = info.variant("Some")? else { return None };
+        let mut tuple = DynamicTuple::default();
+        tuple.insert_boxed(self.typed(&inner, some.field_at(0)?.type_id(), range)?);
+        Some(Box::new(enum_value("Some", DynamicVariant::Tuple(tuple), registration)))
+    }
+
+    fn typed(&mut self, part: &Part, ty: TypeId, range: Option<&Range>) -> Value {
+        match self.registry.get(ty) {
+            Some(registration) => self.value(part, registration, range),
+            None => {
+                let problem = Problem::error("the type of this field is not registered for reflection");
+                self.report(part, problem.help("the plugin that defines it must call `app.register_type` for it"));
+                None
+            }
+        }
+    }
+
+    fn validate(&mut self, part: &Part, registration: &TypeRegistration, value: Option<&dyn PartialReflect>) {
+        let (Some(validate), Some(from_reflect), Some(value)) =
+            (registration.data::<ReflectValidate>(), registration.data::<ReflectFromReflect>(), value)
+        else {
+            return;
+        };
+        let Some(whole) = from_reflect.from_reflect(value) else { return };
+        for (field, message) in validate.get(whole.as_ref()).map(|value| value.problems()).unwrap_or_default() {
+            let path = format!("{}.{field}", self.path);
+            let written = self.places.iter().rev().find(|(place, _)| *place == path).map(|(_, place)| place.clone());
+            let place = written.unwrap_or_else(|| self.place(part));
+            self.problems.push(Problem::error(message).at(place));
+        }
+    }
+
+    fn within<T>(&mut self, step: &str, read: impl FnOnce(&mut Self) -> T) -> T {
+        let length = self.path.len();
+        self.path.push_str(step);
+        let value = read(self);
+        self.path.truncate(length);
+        value
+    }
+
+    fn ok<T>(&mut self, result: Result<T, Misfit>) -> Option<T> {
+        result.map_err(|misfit| self.report_misfit(misfit)).ok()
+    }
+}
+
+fn represent(mut fields: DynamicStruct, info: &'static TypeInfo) -> DynamicStruct {
+    fields.set_represented_type(Some(info));
+    fields
+}
+
+fn enum_value(name: &str, variant: DynamicVariant, registration: &TypeRegistration) -> DynamicEnum {
+    let mut value = DynamicEnum::new(name, variant);
+    value.set_represented_type(Some(registration.type_info()));
+    value
+}
+
+/// What a reader expected, for text that has another shape altogether.
+fn describe(misfit: Misfit, expected: &str) -> Misfit {
+    Misfit { message: format!("expected {expected}: {}", misfit.message), ..misfit }
+}
+
+fn how_to_write(variant: &VariantInfo) -> String {
+    match variant {
+        VariantInfo::Unit(info) => format!("`{}`", info.name()),
+        VariantInfo::Tuple(info) => format!("`{}({})`", info.name(), vec!["…"; info.field_len()].join(", ")),
+        VariantInfo::Struct(info) => format!("`{}(field: value, …)`", info.name()),
+    }
+}
+
+/// What a leaf of this type looks like.
+fn wanted(registration: &TypeRegistration) -> String {
+    let name = registration.type_info().type_path_table().short_path();
+    match name {
+        "f32" | "f64" => "a number".into(),
+        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number of 0 or more".into(),
+        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number".into(),
+        "bool" => "`true` or `false`".into(),
+        "String" => "text in quotes".into(),
+        "AssetPath" => "a path in quotes".into(),
+        "Vec2" => "two numbers `(x, y)`".into(),
+        "Vec3" => "three numbers `(x, y, z)`".into(),
+        "UVec3" => "three whole numbers `(x, y, z)`".into(),
+        _ => format!("a `{name}`"),
+    }
+}
+
+/// Whether [`wanted`] says all there is to say.
+fn is_plain(registration: &TypeRegistration) -> bool {
+    !wanted(registration).starts_with("a `")
+}
+
+/// The numbers in a leaf.
+fn numbers(value: &dyn PartialReflect) -> Vec<f64> {
+    use glam::{UVec3, Vec2, Vec3};
+    let any = value;
+    if let Some(number) = any.try_downcast_ref::<f32>() {
+        vec![f64::from(*number)]
+    } else if let Some(number) = any.try_downcast_ref::<f64>() {
+        vec![*number]
+    } else if let Some(number) = any.try_downcast_ref::<u32>() {
+        vec![f64::from(*number)]
+    } else if let Some(number) = any.try_downcast_ref::<i32>() {
+        vec![f64::from(*number)]
+    } else if let Some(vector) = any.try_downcast_ref::<Vec2>() {
+        vector.to_array().map(f64::from).to_vec()
+    } else if let Some(vector) = any.try_downcast_ref::<Vec3>() {
+        vector.to_array().map(f64::from).to_vec()
+    } else if let Some(vector) = any.try_downcast_ref::<UVec3>() {
+        vector.to_array().map(f64::from).to_vec()
+    } else {
+        Vec::new()
+    }
+}
+
+/// The first characters of a text, on one line.
+fn excerpt(text: &str) -> String {
+    let line = text.lines().next().unwrap_or_default();
+    let short: String = line.chars().take(40).collect();
+    if short.len() < text.len() { format!("{short}…") } else { short }
+}
+
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map(|first| first.to_lowercase().chain(letters).collect()).unwrap_or_default()
+}
