@@ -1,0 +1,104 @@
+//! `cargo xtask ci`: all that a change has to pass, in the order in which it fails fastest.
+//!
+//! Everything is built in the dev profile and for the whole workspace at once. Selecting one package would
+//! choose other features of the shared crates, and so build the largest of them a second time.
+
+mod artifacts;
+mod report;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+
+use crate::environment::Environment;
+use crate::process::{Program, cargo};
+use crate::{assets, setup, test};
+use report::Report;
+
+/// Runs the whole gate and prints what each step took.
+pub fn run() -> Result<()> {
+    let mut report = Report::default();
+    let outcome = steps(&mut report);
+    eprintln!("\n{report}");
+    outcome
+}
+
+fn steps(report: &mut Report) -> Result<()> {
+    report.step("setup", "cargo xtask setup --ci", || setup::run(true))?;
+    let environment = Environment::new()?;
+
+    report.program("format", cargo().arguments(["fmt", "--all", "--check"]))?;
+    report.program("lints", clippy())?;
+    report.program("licences", deny())?;
+    report.step("assets", "cargo xtask assets --check", assets::check)?;
+    report.program("tests", test::nextest().variable("CI", "true").inside(&environment))?;
+    report.program("doc tests", test::doc_tests().variable("CI", "true").inside(&environment))?;
+    report.program("docs", docs())?;
+
+    let built = report.step("build", artifacts::build_line(), artifacts::build)?;
+    for example in &built.examples {
+        let repeat = format!("cargo run --example {}", example.name);
+        let program = Program::new(&example.executable).inside(&environment);
+        report.step(&format!("example {}", example.name), &repeat, || program.run())?;
+    }
+    report.step("scenes", "tyndall check (every file under scenes/)", || {
+        check_scenes(&built.program("tyndall")?.executable, &environment)
+    })
+}
+
+fn clippy() -> Program {
+    cargo().arguments(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])
+}
+
+fn deny() -> Program {
+    cargo().arguments(["deny", "--offline", "check", "bans", "licenses", "sources"])
+}
+
+fn docs() -> Program {
+    cargo().arguments(["doc", "--workspace", "--no-deps"]).variable("RUSTDOCFLAGS", "-D warnings")
+}
+
+fn check_scenes(program: &str, environment: &Environment) -> Result<()> {
+    let scenes = scene_files(Path::new("scenes")).context("cannot list scenes/")?;
+    if scenes.is_empty() {
+        bail!("there is no scene under scenes/");
+    }
+    Program::new(program).arguments(["check"]).arguments(scenes).inside(environment).run()
+}
+
+/// Every .ron file under the folder: scenes, and the materials and tables that they share.
+fn scene_files(folder: &Path) -> Result<Vec<String>> {
+    let mut files = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).with_context(|| folder.display().to_string())? {
+            let path: PathBuf = entry?.path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "ron") {
+                files.push(path.to_str().context("a scene's name is no UTF-8")?.to_owned());
+            }
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_are_found_in_every_folder() {
+        let root = tempfile::tempdir().unwrap();
+        fs::create_dir(root.path().join("volumes")).unwrap();
+        for name in ["b.ron", "volumes/a.ron", "notes.md"] {
+            fs::write(root.path().join(name), "()").unwrap();
+        }
+        let found = scene_files(root.path()).unwrap();
+        let names: Vec<_> =
+            found.iter().map(|path| Path::new(path).strip_prefix(root.path()).unwrap()).collect();
+        assert_eq!(names, [Path::new("b.ron"), Path::new("volumes/a.ron")]);
+    }
+}
