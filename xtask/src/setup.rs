@@ -33,7 +33,11 @@ pub fn adapter() -> Result<Adapter> {
     install_on_debian()?;
     adapter::find().map_err(|missing| {
         let set = "Are VK_ICD_FILENAMES, VK_DRIVER_FILES or LD_LIBRARY_PATH set to something else?";
-        anyhow::anyhow!("{} even after installing {DEBIAN_PACKAGES:?}. {set}", complaint(&missing))
+        anyhow::anyhow!(
+            "{} even after installing {}. {set}",
+            complaint(&missing),
+            DEBIAN_PACKAGES.join(" and ")
+        )
     })
 }
 
