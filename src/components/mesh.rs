@@ -69,4 +69,3 @@ fn ones() -> Vec3 {
 fn one_by_one() -> Vec2 {
     Vec2::ONE
 }
-

@@ -29,6 +29,7 @@ pub use ray_cast::RayCast;
 pub use scene_settings::SceneSettings;
 pub use shading::Shading;
 pub use transfer_function::{Classification, ControlPoint, IsoValue, TransferFunction};
+pub(crate) use transform::place;
 pub use transform::{Motion, Placement, Scale, Transform};
 pub use view_camera::{Projection, ViewCamera};
 pub use volume::{Endian, SampleFormat, Volume};

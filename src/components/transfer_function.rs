@@ -76,10 +76,14 @@ impl Validate for TransferFunction {
         if let Auto::Value(domain) = self.domain
             && domain.x >= domain.y
         {
-            problems.push(("domain", format!("a domain goes from a lower to a higher value, found {domain}")));
+            problems
+                .push(("domain", format!("a domain goes from a lower to a higher value, found {domain}")));
         }
         if let Some(pair) = self.points.windows(2).find(|pair| pair[0].0 > pair[1].0) {
-            problems.push(("points", format!("points must be sorted by position, found {} after {}", pair[1].0, pair[0].0)));
+            problems.push((
+                "points",
+                format!("points must be sorted by position, found {} after {}", pair[1].0, pair[0].0),
+            ));
         }
         problems
     }

@@ -37,7 +37,11 @@ impl Transform {
     pub fn scene_from_entity(&self) -> DAffine3 {
         let angles = self.rotation.as_dvec3() * std::f64::consts::PI / 180.0;
         let rotation = DQuat::from_euler(EulerRot::XYZEx, angles.x, angles.y, angles.z);
-        DAffine3::from_scale_rotation_translation(self.scale.xyz().as_dvec3(), rotation, self.translation.as_dvec3())
+        DAffine3::from_scale_rotation_translation(
+            self.scale.xyz().as_dvec3(),
+            rotation,
+            self.translation.as_dvec3(),
+        )
     }
 }
 
@@ -88,7 +92,12 @@ pub struct Motion(pub DAffine3);
 pub struct Placement(pub DAffine3);
 
 /// Derives [`Placement`], and wakes nothing where the result is the same.
-pub(crate) fn place(mut entities: Query<(Option<&Transform>, Option<&Motion>, &mut Placement), Or<(Changed<Transform>, Changed<Motion>)>>) {
+pub(crate) fn place(
+    mut entities: Query<
+        (Option<&Transform>, Option<&Motion>, &mut Placement),
+        Or<(Changed<Transform>, Changed<Motion>)>,
+    >,
+) {
     for (transform, motion, mut placement) in &mut entities {
         let still = transform.map_or(DAffine3::IDENTITY, Transform::scene_from_entity);
         placement.set_if_neq(Placement(motion.map_or(DAffine3::IDENTITY, |motion| motion.0) * still));

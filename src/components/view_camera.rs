@@ -45,7 +45,14 @@ pub struct ViewCamera {
 
 impl Default for ViewCamera {
     fn default() -> Self {
-        Self { eye: Vec3::new(0.0, 0.0, 4.0), target: Vec3::ZERO, up: Vec3::Y, projection: Projection::default(), exposure: 0.0, gamma: 2.2 }
+        Self {
+            eye: Vec3::new(0.0, 0.0, 4.0),
+            target: Vec3::ZERO,
+            up: Vec3::Y,
+            projection: Projection::default(),
+            exposure: 0.0,
+            gamma: 2.2,
+        }
     }
 }
 
@@ -54,7 +61,10 @@ impl Validate for ViewCamera {
         let view = (self.target.as_dvec3() - self.eye.as_dvec3()).normalize_or_zero();
         let up = self.up.as_dvec3().normalize_or_zero();
         if view.length_squared() == 0.0 {
-            return vec![("target", format!("the camera must look somewhere: `target` and `eye` are both {}", self.eye))];
+            return vec![(
+                "target",
+                format!("the camera must look somewhere: `target` and `eye` are both {}", self.eye),
+            )];
         }
         if view.cross(up).length() < 1e-6 {
             return vec![("up", format!("`up` must point across the view, found {} along it", self.up))];

@@ -1,4 +1,6 @@
-use super::{AssetPath, Placement, Range, RayCast, Required, TransferFunction, Transform, Unit, VolumeLighting};
+use super::{
+    AssetPath, Placement, Range, RayCast, Required, TransferFunction, Transform, Unit, VolumeLighting,
+};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::{UVec3, Vec3};

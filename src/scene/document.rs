@@ -69,7 +69,8 @@ impl std::str::FromStr for Override {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (path, value) = text.split_once('=').ok_or("expected entity.Component.field=VALUE, found no `=`")?;
+        let (path, value) =
+            text.split_once('=').ok_or("expected entity.Component.field=VALUE, found no `=`")?;
         Ok(Self { path: path.trim().into(), value: value.trim().into() })
     }
 }
@@ -125,7 +126,8 @@ impl SceneDocument {
     }
 
     fn load_with(path: &Path, registry: &TypeRegistry, texts: &HashMap<PathBuf, String>) -> Self {
-        let mut loader = Loader { registry, texts, document: Self::default(), settings: SceneSettings::default() };
+        let mut loader =
+            Loader { registry, texts, document: Self::default(), settings: SceneSettings::default() };
         loader.file(path, None, true);
         let mut document = loader.document;
         document.settings = loader.settings;
@@ -167,13 +169,16 @@ impl<'a> Loader<'a> {
             "include" => self.includes(reader, value),
             field if main && SETTINGS.contains(&field) => self.setting(reader, field, value),
             field if SETTINGS.contains(&field) => {
-                let problem = Problem::error(format!("`{field}` belongs in the head of the scene, not in a file that it includes"));
+                let problem = Problem::error(format!(
+                    "`{field}` belongs in the head of the scene, not in a file that it includes"
+                ));
                 reader.report(name, problem);
             }
             other => {
                 let mut known = SETTINGS.to_vec();
                 known.extend(["include", "entities"]);
-                let problem = Problem::error(format!("a scene has no field `{other}`")).label("unknown field");
+                let problem =
+                    Problem::error(format!("a scene has no field `{other}`")).label("unknown field");
                 reader.report(name, problem.help(suggestion(other, &known)));
             }
         }
@@ -201,7 +206,9 @@ impl<'a> Loader<'a> {
         };
         for element in elements {
             let Some(value) = reader.value_at("include", &element, registration, None) else { continue };
-            let Some(path) = value.try_downcast_ref::<AssetPath>().map(|path| path.path().to_owned()) else { continue };
+            let Some(path) = value.try_downcast_ref::<AssetPath>().map(|path| path.path().to_owned()) else {
+                continue;
+            };
             if !self.document.files.contains(&path) {
                 self.file(&path, Some(&reader.place(&element)), false);
             }
@@ -226,8 +233,12 @@ impl<'a> Loader<'a> {
             if let Some(first) = self.document.entity(&name) {
                 let elsewhere = first.place.to_string();
                 let other = Some((first.place.clone(), "first here".into()));
-                let problem = Problem::error(format!("two entities are called `{name}`")).label("again here").at(place);
-                reader.problems.push(Problem { other, ..problem.help(format!("the first stands at {elsewhere}; a name is an identity")) });
+                let problem =
+                    Problem::error(format!("two entities are called `{name}`")).label("again here").at(place);
+                reader.problems.push(Problem {
+                    other,
+                    ..problem.help(format!("the first stands at {elsewhere}; a name is an identity"))
+                });
                 continue;
             }
             let entity = self.entity(reader, name, place, &value);
@@ -248,21 +259,35 @@ impl<'a> Loader<'a> {
         for Named { name, value } in fields {
             let Some(registration) = self.component_type(reader, &name) else { continue };
             if entity.components.iter().any(|component| component.type_id == registration.type_id()) {
-                reader.report(&name, Problem::error(format!("`{}` is written twice on `{}`", name.text, entity.name)));
+                reader.report(
+                    &name,
+                    Problem::error(format!("`{}` is written twice on `{}`", name.text, entity.name)),
+                );
                 continue;
             }
             let value = self.component(reader, name.text, &value, registration);
             entity.places.extend(reader.places.drain(..));
             if let Some(value) = value {
-                entity.components.push(SceneComponent { name: name.text.into(), type_id: registration.type_id(), value });
+                entity.components.push(SceneComponent {
+                    name: name.text.into(),
+                    type_id: registration.type_id(),
+                    value,
+                });
             }
         }
         entity
     }
 
     /// Reads a component, from its own file where it is written as `File("…")` and the type has no such kind itself.
-    fn component(&mut self, reader: &mut Reader, name: &str, part: &Part, registration: &TypeRegistration) -> Option<Box<dyn Reflect>> {
-        let has_own_files = matches!(registration.type_info(), TypeInfo::Enum(info) if info.contains_variant("File"));
+    fn component(
+        &mut self,
+        reader: &mut Reader,
+        name: &str,
+        part: &Part,
+        registration: &TypeRegistration,
+    ) -> Option<Box<dyn Reflect>> {
+        let has_own_files =
+            matches!(registration.type_info(), TypeInfo::Enum(info) if info.contains_variant("File"));
         let file_part = if has_own_files { None } else { edit::file_path(part) };
         let Some(path_part) = file_part else { return reader.complete(part, registration, name) };
         let path_type = self.registry.get(TypeId::of::<AssetPath>())?;
@@ -278,16 +303,22 @@ impl<'a> Loader<'a> {
 
     fn component_type(&self, reader: &mut Reader, name: &Part) -> Option<&'a TypeRegistration> {
         let found = self.registry.get_with_short_type_path(name.text);
-        if let Some(registration) = found.filter(|registration| registration.data::<ReflectComponent>().is_some()) {
+        if let Some(registration) =
+            found.filter(|registration| registration.data::<ReflectComponent>().is_some())
+        {
             return Some(registration);
         }
-        let components = self.registry.iter().filter(|registration| registration.data::<ReflectComponent>().is_some());
-        let mut known: Vec<_> = components.map(|registration| registration.type_info().type_path_table().short_path()).collect();
+        let components =
+            self.registry.iter().filter(|registration| registration.data::<ReflectComponent>().is_some());
+        let mut known: Vec<_> =
+            components.map(|registration| registration.type_info().type_path_table().short_path()).collect();
         known.sort_unstable();
         let problem = if self.registry.is_ambiguous(name.text) {
             Problem::error(format!("more than one plugin has a component `{}`", name.text)).label("ambiguous")
         } else {
-            Problem::error(format!("there is no component `{}`", name.text)).label("unknown component").help(suggestion(name.text, &known))
+            Problem::error(format!("there is no component `{}`", name.text))
+                .label("unknown component")
+                .help(suggestion(name.text, &known))
         };
         reader.report(name, problem);
         None
@@ -315,15 +346,20 @@ const MAX_SCENE_BYTES: u64 = 64 << 20;
 
 fn read_text(path: &Path) -> Result<String, Problem> {
     use std::io::Read;
-    let unreadable = |error: std::io::Error| Problem::error(format!("cannot read {}: {error}", path.display()));
+    let unreadable =
+        |error: std::io::Error| Problem::error(format!("cannot read {}: {error}", path.display()));
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(unreadable)?;
     file.take(MAX_SCENE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > MAX_SCENE_BYTES {
-        return Err(Problem::error(format!("{} is longer than {MAX_SCENE_BYTES} bytes: is it a scene?", path.display())));
+        return Err(Problem::error(format!(
+            "{} is longer than {MAX_SCENE_BYTES} bytes: is it a scene?",
+            path.display()
+        )));
     }
     String::from_utf8(bytes).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
-        Problem::error(format!("{} is not UTF-8 text (byte {place})", path.display())).help("save it as UTF-8")
+        Problem::error(format!("{} is not UTF-8 text (byte {place})", path.display()))
+            .help("save it as UTF-8")
     })
 }

@@ -5,7 +5,9 @@
 //! for, and a mistake in one of them does not hide those in the others.
 
 use ron::value::RawValue;
-use serde::de::{Deserialize, DeserializeSeed, Deserializer, EnumAccess, MapAccess, SeqAccess, VariantAccess, Visitor};
+use serde::de::{
+    Deserialize, DeserializeSeed, Deserializer, EnumAccess, MapAccess, SeqAccess, VariantAccess, Visitor,
+};
 use std::fmt;
 use std::ops::Range;
 
@@ -73,7 +75,10 @@ impl<'a> Part<'a> {
         self.parse(|ron| seed.deserialize(ron))
     }
 
-    fn parse<T>(&self, read: impl FnOnce(&mut ron::Deserializer<'a>) -> Result<T, ron::Error>) -> Result<T, Misfit> {
+    fn parse<T>(
+        &self,
+        read: impl FnOnce(&mut ron::Deserializer<'a>) -> Result<T, ron::Error>,
+    ) -> Result<T, Misfit> {
         let mut ron = ron::Deserializer::from_str(self.text).map_err(|error| self.misfit(&error))?;
         let value = read(&mut ron).map_err(|error| ron.span_error(error));
         let value = value.and_then(|value| ron.end().map(|()| value).map_err(|error| ron.span_error(error)));
@@ -84,7 +89,10 @@ impl<'a> Part<'a> {
         let start = offset(self.text, error.span.start);
         let end = offset(self.text, error.span.end).clamp(start, self.text.len());
         let base = self.bytes().start;
-        Misfit { bytes: base + start..base + end.max((start + 1).min(self.text.len())), message: error.code.to_string() }
+        Misfit {
+            bytes: base + start..base + end.max((start + 1).min(self.text.len())),
+            message: error.code.to_string(),
+        }
     }
 
     /// The parts of `(name: value, …)`.
@@ -109,7 +117,8 @@ impl<'a> Part<'a> {
 
     /// The inside of `Some(value)`, or nothing for `None`.
     pub fn option(&self) -> Result<Option<Part<'a>>, Misfit> {
-        self.parse(|ron| ron.deserialize_option(OptionVisitor)).map(|value| value.map(|value| self.sub(value)))
+        self.parse(|ron| ron.deserialize_option(OptionVisitor))
+            .map(|value| value.map(|value| self.sub(value)))
     }
 
     /// The word that the part begins with, if it does: the name of a variant.
@@ -134,7 +143,10 @@ impl<'a> Part<'a> {
     }
 
     fn named(&self, pairs: Vec<(&'a str, &'a str)>) -> Vec<Named<'a>> {
-        pairs.into_iter().map(|(name, value)| Named { name: self.sub(name), value: self.sub(value) }).collect()
+        pairs
+            .into_iter()
+            .map(|(name, value)| Named { name: self.sub(name), value: self.sub(value) })
+            .collect()
     }
 }
 
@@ -304,7 +316,9 @@ impl<'de> Visitor<'de> for PayloadVisitor {
         let (_, rest) = access.variant_seed(Identifier)?;
         match self.0 {
             Shape::Unit => rest.unit_variant().map(|()| RawPayload::Unit),
-            Shape::Tuple(1) => rest.newtype_variant::<&RawValue>().map(|value| RawPayload::Values(vec![value.get_ron()])),
+            Shape::Tuple(1) => {
+                rest.newtype_variant::<&RawValue>().map(|value| RawPayload::Values(vec![value.get_ron()]))
+            }
             Shape::Tuple(length) => rest.tuple_variant(length, ValuesVisitor).map(RawPayload::Values),
             Shape::Struct => rest.struct_variant(&[], FieldsVisitor).map(RawPayload::Fields),
         }
@@ -319,7 +333,8 @@ mod tests {
     fn parts_know_their_place() {
         let text = "( // head\n  a: 1.5, /* b /* nested */ */ b: (2, 3), // tail\n)";
         let fields = Part::whole(text).fields().unwrap_or_else(|misfit| panic!("{}", misfit.message));
-        let values: Vec<_> = fields.iter().map(|field| (field.name.text, &text[field.value.bytes()])).collect();
+        let values: Vec<_> =
+            fields.iter().map(|field| (field.name.text, &text[field.value.bytes()])).collect();
         assert_eq!(values, [("a", "1.5"), ("b", "(2, 3)")]);
     }
 

@@ -1,6 +1,6 @@
 //! What is wrong with a scene, where, and how to mend it.
 
-use bevy_ecs::prelude::Resource;
+use bevy_ecs::prelude::{Entity, Resource};
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 use std::fmt;
 use std::ops::Range;
@@ -79,12 +79,22 @@ pub struct Problem {
     pub place: Option<Place>,
     /// A second place that matters, and what it is.
     pub other: Option<(Place, String)>,
+    /// The entity, and the path of the value in it, that the problem is about; for those found after the scene was read.
+    pub subject: Option<(Entity, String)>,
 }
 
 impl Problem {
     /// An error without a place.
     pub fn error(message: impl Into<String>) -> Self {
-        Self { severity: Severity::Error, message: message.into(), label: "here".into(), help: None, place: None, other: None }
+        Self {
+            severity: Severity::Error,
+            message: message.into(),
+            label: "here".into(),
+            help: None,
+            place: None,
+            other: None,
+            subject: None,
+        }
     }
 
     /// Something worth knowing.
@@ -101,6 +111,12 @@ impl Problem {
     /// Says where, if that is known.
     pub fn at_maybe(mut self, place: Option<Place>) -> Self {
         self.place = place;
+        self
+    }
+
+    /// Says which value of which entity it is about; its place is looked up in the scene's document.
+    pub fn on(mut self, entity: Entity, path: impl Into<String>) -> Self {
+        self.subject = Some((entity, path.into()));
         self
     }
 
@@ -156,7 +172,8 @@ impl Diagnostic for Problem {
         let place = self.place.as_ref()?;
         let other = self.other.as_ref().filter(|(other, _)| Arc::ptr_eq(&other.file, &place.file));
         let first = LabeledSpan::new_primary_with_span(Some(self.label.clone()), place.bytes.clone());
-        let second = other.map(|(other, label)| LabeledSpan::new_with_span(Some(label.clone()), other.bytes.clone()));
+        let second =
+            other.map(|(other, label)| LabeledSpan::new_with_span(Some(label.clone()), other.bytes.clone()));
         Some(Box::new(std::iter::once(first).chain(second)))
     }
 }

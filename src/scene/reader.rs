@@ -11,7 +11,8 @@ use bevy_reflect::structs::DynamicStruct;
 use bevy_reflect::tuple::DynamicTuple;
 use bevy_reflect::tuple_struct::DynamicTupleStruct;
 use bevy_reflect::{
-    NamedField, PartialReflect, Reflect, ReflectDeserialize, ReflectFromReflect, TypeInfo, TypeRegistration, TypeRegistry,
+    NamedField, PartialReflect, Reflect, ReflectDeserialize, ReflectFromReflect, TypeInfo, TypeRegistration,
+    TypeRegistry,
 };
 use std::any::TypeId;
 use std::path::Path;
@@ -52,23 +53,36 @@ impl<'r> Reader<'r> {
     }
 
     /// Reads a whole component or other registered type, complete with the defaults of what is not written.
-    pub fn complete(&mut self, part: &Part, registration: &TypeRegistration, name: &str) -> Option<Box<dyn Reflect>> {
+    pub fn complete(
+        &mut self,
+        part: &Part,
+        registration: &TypeRegistration,
+        name: &str,
+    ) -> Option<Box<dyn Reflect>> {
         self.path = name.to_owned();
         let before = self.problems.len();
         let value = self.value(part, registration, None)?;
         if self.problems.len() > before {
             return None;
         }
-        let whole = registration.data::<ReflectFromReflect>().and_then(|data| data.from_reflect(value.as_ref()));
+        let whole =
+            registration.data::<ReflectFromReflect>().and_then(|data| data.from_reflect(value.as_ref()));
         if whole.is_none() {
-            let problem = Problem::error(format!("`{name}` is not complete: a field without a default is missing"));
+            let problem =
+                Problem::error(format!("`{name}` is not complete: a field without a default is missing"));
             self.report(part, problem);
         }
         whole
     }
 
     /// Reads a value that stands at `path`.
-    pub fn value_at(&mut self, path: &str, part: &Part, registration: &TypeRegistration, range: Option<&Range>) -> Value {
+    pub fn value_at(
+        &mut self,
+        path: &str,
+        part: &Part,
+        registration: &TypeRegistration,
+        range: Option<&Range>,
+    ) -> Value {
         let before = self.problems.len();
         self.path = path.to_owned();
         self.value(part, registration, range).filter(|_| self.problems.len() == before)
@@ -81,13 +95,20 @@ impl<'r> Reader<'r> {
         let value = match registration.type_info() {
             _ if registration.data::<ReflectDeserialize>().is_some() => self.leaf(part, registration, range),
             TypeInfo::Struct(info) => {
-                let fields = self.ok(part.fields().map_err(|misfit| describe(misfit, "`(field: value, …)`")))?;
+                let fields =
+                    self.ok(part.fields().map_err(|misfit| describe(misfit, "`(field: value, …)`")))?;
                 let known: Vec<_> = info.iter().collect();
-                let read = self.fields(part, fields, &known, registration.type_info().type_path_table().short_path());
+                let read = self.fields(
+                    part,
+                    fields,
+                    &known,
+                    registration.type_info().type_path_table().short_path(),
+                );
                 Some(Box::new(represent(read, registration.type_info())) as Box<dyn PartialReflect>)
             }
             TypeInfo::TupleStruct(info) => {
-                let types: Vec<_> = info.iter().map(|field| (field.type_id(), field.get_attribute::<Range>())).collect();
+                let types: Vec<_> =
+                    info.iter().map(|field| (field.type_id(), field.get_attribute::<Range>())).collect();
                 self.tuple(part, &types).map(|values| {
                     let mut tuple = DynamicTupleStruct::default();
                     values.into_iter().for_each(|value| tuple.insert_boxed(value));
@@ -119,7 +140,11 @@ impl<'r> Reader<'r> {
         let mut value = match part.read(seed) {
             Ok(value) => value,
             Err(misfit) => {
-                let problem = Problem::error(format!("expected {}, found `{}`", wanted(registration), excerpt(part.text)));
+                let problem = Problem::error(format!(
+                    "expected {}, found `{}`",
+                    wanted(registration),
+                    excerpt(part.text)
+                ));
                 let detail = sentence(&misfit.message);
                 self.report(part, if is_plain(registration) { problem } else { problem.help(detail) });
                 return None;
@@ -131,54 +156,91 @@ impl<'r> Reader<'r> {
         for number in numbers(value.as_ref()) {
             let range = range.copied().unwrap_or(Range::new(f64::MIN, f64::MAX));
             if !number.is_finite() || !range.contains(number) {
-                let bounds = if range.max == f64::MAX && range.min == f64::MIN { "a finite number".into() } else { range.to_string() };
+                let bounds = if range.max == f64::MAX && range.min == f64::MIN {
+                    "a finite number".into()
+                } else {
+                    range.to_string()
+                };
                 let name = self.path.rsplit('.').next().unwrap_or_default().to_owned();
-                self.report(part, Problem::error(format!("`{name}` must be {bounds}, found {number}")).label("out of range"));
+                self.report(
+                    part,
+                    Problem::error(format!("`{name}` must be {bounds}, found {number}"))
+                        .label("out of range"),
+                );
                 return None;
             }
         }
         Some(value)
     }
 
-    fn fields(&mut self, whole: &Part, written: Vec<Named>, known: &[&NamedField], owner: &str) -> DynamicStruct {
+    fn fields(
+        &mut self,
+        whole: &Part,
+        written: Vec<Named>,
+        known: &[&NamedField],
+        owner: &str,
+    ) -> DynamicStruct {
         let mut read = DynamicStruct::default();
         let mut seen: Vec<(&str, Place)> = Vec::new();
         for Named { name, value } in &written {
             let Some(field) = known.iter().find(|field| field.name() == name.text) else {
                 let names: Vec<_> = known.iter().map(|field| field.name()).collect();
-                let problem = Problem::error(format!("`{owner}` has no field `{}`", name.text)).label("unknown field");
+                let problem =
+                    Problem::error(format!("`{owner}` has no field `{}`", name.text)).label("unknown field");
                 self.report(name, problem.help(suggestion(name.text, &names)));
                 continue;
             };
             if let Some((_, first)) = seen.iter().find(|(seen, _)| *seen == name.text) {
                 let other = Some((first.clone(), "first written here".into()));
-                let problem = Problem { other, ..Problem::error(format!("`{}` is written twice", name.text)).label("again here") };
+                let problem = Problem {
+                    other,
+                    ..Problem::error(format!("`{}` is written twice", name.text)).label("again here")
+                };
                 self.report(name, problem);
                 continue;
             }
             seen.push((field.name(), self.place(name)));
-            if let Some(value) = self.within(&format!(".{}", field.name()), |reader| reader.typed(value, field.type_id(), field.get_attribute::<Range>())) {
+            if let Some(value) = self.within(&format!(".{}", field.name()), |reader| {
+                reader.typed(value, field.type_id(), field.get_attribute::<Range>())
+            }) {
                 read.insert_boxed(field.name(), value);
             }
         }
         for field in known.iter().filter(|field| field.has_attribute::<Required>()) {
             if !seen.iter().any(|(name, _)| *name == field.name()) {
-                let problem = Problem::error(format!("`{owner}` needs `{}`, which has no default", field.name())).label("missing in here");
+                let problem =
+                    Problem::error(format!("`{owner}` needs `{}`, which has no default", field.name()))
+                        .label("missing in here");
                 self.report(whole, problem.help(format!("write `{}: …`", field.name())));
             }
         }
         read
     }
 
-    fn tuple(&mut self, part: &Part, types: &[(TypeId, Option<&Range>)]) -> Option<Vec<Box<dyn PartialReflect>>> {
+    fn tuple(
+        &mut self,
+        part: &Part,
+        types: &[(TypeId, Option<&Range>)],
+    ) -> Option<Vec<Box<dyn PartialReflect>>> {
         let parts = match part.tuple(types.len()) {
             Ok(parts) if parts.len() == types.len() => parts,
             Ok(parts) => {
-                self.report(part, Problem::error(format!("expected {} values in parentheses, found {}", types.len(), parts.len())));
+                self.report(
+                    part,
+                    Problem::error(format!(
+                        "expected {} values in parentheses, found {}",
+                        types.len(),
+                        parts.len()
+                    )),
+                );
                 return None;
             }
             Err(_) => {
-                let problem = Problem::error(format!("expected {} values in parentheses, found `{}`", types.len(), excerpt(part.text)));
+                let problem = Problem::error(format!(
+                    "expected {} values in parentheses, found `{}`",
+                    types.len(),
+                    excerpt(part.text)
+                ));
                 self.report(part, problem);
                 return None;
             }
@@ -187,7 +249,9 @@ impl<'r> Reader<'r> {
             .iter()
             .zip(types)
             .enumerate()
-            .map(|(index, (part, (ty, range)))| self.within(&format!(".{index}"), |reader| reader.typed(part, *ty, *range)))
+            .map(|(index, (part, (ty, range)))| {
+                self.within(&format!(".{index}"), |reader| reader.typed(part, *ty, *range))
+            })
             .collect();
         values.into_iter().collect()
     }
@@ -196,14 +260,22 @@ impl<'r> Reader<'r> {
         let elements = self.ok(part.elements().map_err(|misfit| describe(misfit, "a list `[value, …]`")))?;
         let mut list = DynamicList::default();
         for (index, element) in elements.iter().enumerate() {
-            if let Some(value) = self.within(&format!("[{index}]"), |reader| reader.typed(element, item, range)) {
+            if let Some(value) =
+                self.within(&format!("[{index}]"), |reader| reader.typed(element, item, range))
+            {
                 list.push_box(value);
             }
         }
         Some(Box::new(list))
     }
 
-    fn enumeration(&mut self, part: &Part, info: &'static EnumInfo, registration: &TypeRegistration, range: Option<&Range>) -> Value {
+    fn enumeration(
+        &mut self,
+        part: &Part,
+        info: &'static EnumInfo,
+        registration: &TypeRegistration,
+        range: Option<&Range>,
+    ) -> Value {
         if info.has_attribute::<Untagged>() {
             return self.untagged(part, info, registration, range);
         }
@@ -214,7 +286,8 @@ impl<'r> Reader<'r> {
         let word = part.word();
         let Some(variant) = word.and_then(|word| info.variant(word.text)) else {
             let at = word.unwrap_or(*part);
-            let problem = Problem::error(format!("`{}` is not a kind of {owner}", excerpt(at.text))).label("unknown");
+            let problem =
+                Problem::error(format!("`{}` is not a kind of {owner}", excerpt(at.text))).label("unknown");
             self.report(&at, problem.help(suggestion(at.text, info.variant_names())));
             return None;
         };
@@ -225,31 +298,42 @@ impl<'r> Reader<'r> {
         };
         let how = how_to_write(variant);
         let payload = self.ok(part.payload(shape).map_err(|misfit| describe(misfit, &how)))?;
-        let variant_value = match (variant, payload) {
-            (VariantInfo::Struct(info), Payload::Fields(fields)) => {
-                let known: Vec<_> = info.iter().collect();
-                DynamicVariant::Struct(self.fields(part, fields, &known, variant.name()))
-            }
-            (VariantInfo::Tuple(info), Payload::Values(parts)) => {
-                let mut tuple = DynamicTuple::default();
-                for (index, (part, field)) in parts.iter().zip(info.iter()).enumerate() {
-                    let range = field.get_attribute::<Range>();
-                    tuple.insert_boxed(self.within(&format!(".{index}"), |reader| reader.typed(part, field.type_id(), range))?);
+        let variant_value =
+            match (variant, payload) {
+                (VariantInfo::Struct(info), Payload::Fields(fields)) => {
+                    let known: Vec<_> = info.iter().collect();
+                    DynamicVariant::Struct(self.fields(part, fields, &known, variant.name()))
                 }
-                DynamicVariant::Tuple(tuple)
-            }
-            _ => DynamicVariant::Unit,
-        };
+                (VariantInfo::Tuple(info), Payload::Values(parts)) => {
+                    let mut tuple = DynamicTuple::default();
+                    for (index, (part, field)) in parts.iter().zip(info.iter()).enumerate() {
+                        let range = field.get_attribute::<Range>();
+                        tuple.insert_boxed(self.within(&format!(".{index}"), |reader| {
+                            reader.typed(part, field.type_id(), range)
+                        })?);
+                    }
+                    DynamicVariant::Tuple(tuple)
+                }
+                _ => DynamicVariant::Unit,
+            };
         Some(Box::new(enum_value(variant.name(), variant_value, registration)))
     }
 
     /// An enum written without the names of its variants.
-    fn untagged(&mut self, part: &Part, info: &'static EnumInfo, registration: &TypeRegistration, range: Option<&Range>) -> Value {
+    fn untagged(
+        &mut self,
+        part: &Part,
+        info: &'static EnumInfo,
+        registration: &TypeRegistration,
+        range: Option<&Range>,
+    ) -> Value {
         if let Some(VariantInfo::Unit(unit)) = info.variant(part.text) {
             return Some(Box::new(enum_value(unit.name(), DynamicVariant::Unit, registration)));
         }
         let carriers = info.iter().filter_map(|variant| match variant {
-            VariantInfo::Tuple(tuple) if tuple.field_len() == 1 => tuple.field_at(0).map(|field| (variant.name(), field)),
+            VariantInfo::Tuple(tuple) if tuple.field_len() == 1 => {
+                tuple.field_at(0).map(|field| (variant.name(), field))
+            }
             _ => None,
         });
         let before = (self.problems.len(), self.places.len());
@@ -270,9 +354,17 @@ impl<'r> Reader<'r> {
         None
     }
 
-    fn option(&mut self, part: &Part, info: &'static EnumInfo, registration: &TypeRegistration, range: Option<&Range>) -> Value {
+    fn option(
+        &mut self,
+        part: &Part,
+        info: &'static EnumInfo,
+        registration: &TypeRegistration,
+        range: Option<&Range>,
+    ) -> Value {
         let inner = self.ok(part.option().map_err(|misfit| describe(misfit, "`Some(value)` or `None`")))?;
-        let Some(inner) = inner else { return Some(Box::new(enum_value("None", DynamicVariant::Unit, registration))) };
+        let Some(inner) = inner else {
+            return Some(Box::new(enum_value("None", DynamicVariant::Unit, registration)));
+        };
         let VariantInfo::Tuple(some) = info.variant("Some")? else { return None };
         let mut tuple = DynamicTuple::default();
         tuple.insert_boxed(self.typed(&inner, some.field_at(0)?.type_id(), range)?);
@@ -284,7 +376,10 @@ impl<'r> Reader<'r> {
             Some(registration) => self.value(part, registration, range),
             None => {
                 let problem = Problem::error("the type of this field is not registered for reflection");
-                self.report(part, problem.help("the plugin that defines it must call `app.register_type` for it"));
+                self.report(
+                    part,
+                    problem.help("the plugin that defines it must call `app.register_type` for it"),
+                );
                 None
             }
         }
@@ -297,9 +392,11 @@ impl<'r> Reader<'r> {
             return;
         };
         let Some(whole) = from_reflect.from_reflect(value) else { return };
-        for (field, message) in validate.get(whole.as_ref()).map(|value| value.problems()).unwrap_or_default() {
+        for (field, message) in validate.get(whole.as_ref()).map(|value| value.problems()).unwrap_or_default()
+        {
             let path = format!("{}.{field}", self.path);
-            let written = self.places.iter().rev().find(|(place, _)| *place == path).map(|(_, place)| place.clone());
+            let written =
+                self.places.iter().rev().find(|(place, _)| *place == path).map(|(_, place)| place.clone());
             let place = written.unwrap_or_else(|| self.place(part));
             self.problems.push(Problem::error(message).at(place));
         }

@@ -25,13 +25,23 @@ pub fn reconcile(world: &mut World, document: &SceneDocument) {
     let registry = world.get_resource_or_init::<AppTypeRegistry>().clone();
     let registry = registry.read();
     let names: HashSet<&str> = document.entities.iter().map(|entity| entity.name.as_str()).collect();
-    let gone = world.resource_mut::<SceneEntities>().0.extract_if(|name, _| !names.contains(name.as_str())).collect::<Vec<_>>();
+    let gone = world
+        .resource_mut::<SceneEntities>()
+        .0
+        .extract_if(|name, _| !names.contains(name.as_str()))
+        .collect::<Vec<_>>();
     for (_, entity) in gone {
         world.despawn(entity);
     }
     for written in &document.entities {
-        let known = world.resource::<SceneEntities>().0.get(&written.name).copied().filter(|entity| world.get_entity(*entity).is_ok());
-        let entity = known.unwrap_or_else(|| world.spawn((Name::new(written.name.clone()), FromScene::default())).id());
+        let known = world
+            .resource::<SceneEntities>()
+            .0
+            .get(&written.name)
+            .copied()
+            .filter(|entity| world.get_entity(*entity).is_ok());
+        let entity = known
+            .unwrap_or_else(|| world.spawn((Name::new(written.name.clone()), FromScene::default())).id());
         world.resource_mut::<SceneEntities>().0.insert(written.name.clone(), entity);
         for component in &written.components {
             write(&mut world.entity_mut(entity), component.type_id, component.value.as_ref(), &registry);
@@ -53,7 +63,9 @@ fn write(entity: &mut EntityWorldMut, type_id: TypeId, value: &dyn Reflect, regi
 /// Takes away what an earlier version of the scene wrote and this one does not. What the rest of the entity requires goes back to its
 /// default instead.
 fn remove_missing(entity: &mut EntityWorldMut, now: &HashSet<TypeId>, registry: &TypeRegistry) {
-    let before = entity.get_mut::<FromScene>().map(|mut from_scene| std::mem::replace(&mut from_scene.bypass_change_detection().0, now.clone()));
+    let before = entity
+        .get_mut::<FromScene>()
+        .map(|mut from_scene| std::mem::replace(&mut from_scene.bypass_change_detection().0, now.clone()));
     let gone: Vec<TypeId> = before.unwrap_or_default().difference(now).copied().collect();
     for type_id in gone {
         if is_required(entity, type_id, now)
@@ -69,6 +81,9 @@ fn remove_missing(entity: &mut EntityWorldMut, now: &HashSet<TypeId>, registry: 
 fn is_required(entity: &EntityWorldMut, type_id: TypeId, now: &HashSet<TypeId>) -> bool {
     let components = entity.world().components();
     let Some(id) = components.get_id(type_id) else { return false };
-    let owners = now.iter().filter_map(|owner| components.get_id(*owner)).filter_map(|owner| components.get_info(owner));
+    let owners = now
+        .iter()
+        .filter_map(|owner| components.get_id(*owner))
+        .filter_map(|owner| components.get_info(owner));
     owners.into_iter().any(|owner| owner.required_components().iter_ids().any(|required| required == id))
 }

@@ -1,18 +1,21 @@
-//! stub
-use bevy_reflect::Reflect;
-use bevy_reflect::std_traits::ReflectDefault;
-/// a
-#[derive(Reflect,Clone,Copy,Debug,Default,PartialEq,Eq)]
-#[reflect(Default,PartialEq)]
-pub enum SampleFormat { /// a
- #[default] U8, /// a
- I8, /// a
- U16, /// a
- I16, /// a
- F32 }
-/// a
-#[derive(Reflect,Clone,Copy,Debug,Default,PartialEq,Eq)]
-#[reflect(Default,PartialEq)]
-pub enum Endian { /// a
- #[default] Little, /// a
- Big }
+//! Files, and a few shapes made on the spot, as mesh and volume data.
+//!
+//! Nothing here knows a scene, an entity or a GPU: a path goes in, plain vectors or a [`SourceError`] come out. Whatever the
+//! file holds, a reader neither panics nor allocates more than a bounded multiple of the file's length.
+
+pub mod error;
+mod file;
+pub mod mesh;
+pub mod obj;
+pub mod procedural;
+pub mod raw;
+pub mod volume;
+
+pub use error::{LayoutError, SourceError};
+pub use mesh::{MeshData, MeshStatistics};
+pub use obj::read_obj;
+pub use raw::{RawLayout, read_raw};
+pub use volume::{BrickRanges, Endian, SampleFormat, Samples, VolumeData};
+
+#[cfg(test)]
+mod tests;

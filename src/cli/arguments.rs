@@ -1,0 +1,117 @@
+//! What can be typed.
+
+use crate::scene::Override;
+use clap::{Args, Parser, Subcommand};
+use glam::UVec2;
+use std::ops::Range;
+use std::path::PathBuf;
+
+/// Light scattering in meshes and volumes, as data.
+#[derive(Parser, Debug)]
+#[command(name = "tyndall", version, about, arg_required_else_help = true)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand, Debug)]
+pub(super) enum Command {
+    /// Draw a scene into a PNG (exposed and gamma-encoded) or EXR (linear radiance) file
+    Render(RenderArguments),
+    /// Find every problem of scenes: syntax, names, values, files
+    Check(CheckArguments),
+    /// Tell what this machine draws with, or what a scene holds
+    Info(InfoArguments),
+    /// Write a starter scene, or a starter plugin crate
+    New(NewArguments),
+}
+
+#[derive(Args, Debug)]
+pub(super) struct RenderArguments {
+    /// The scene, a RON file
+    pub scene: PathBuf,
+    /// The picture to write: its ending, .png or .exr, says which kind
+    #[arg(short, long, default_value = "out.png", value_parser = picture_path)]
+    pub output: PathBuf,
+    /// Pixels across and down
+    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = size)]
+    pub size: UVec2,
+    /// The ViewCamera to draw with, by its entity's name; else the first by name
+    #[arg(long, value_name = "NAME")]
+    pub camera: Option<String>,
+    /// Draw frames A to B-1 of the scene's animation, as out_0000.png and so on
+    #[arg(long, value_name = "A..B", value_parser = frames)]
+    pub frames: Option<Range<u64>>,
+    /// Frames a second of the animation
+    #[arg(long, default_value_t = 25.0, value_parser = rate)]
+    pub fps: f64,
+    /// Replace a value of the scene
+    #[arg(long = "set", value_name = "ENTITY.COMPONENT.FIELD=VALUE")]
+    pub overrides: Vec<Override>,
+    /// Write what was done, how often, on how much, and how long it took, as JSON
+    #[arg(long, value_name = "FILE")]
+    pub stats: Option<PathBuf>,
+    /// Use only what WebGPU guarantees on every adapter
+    #[arg(long)]
+    pub portable: bool,
+}
+
+#[derive(Args, Debug)]
+pub(super) struct CheckArguments {
+    /// The scenes, RON files
+    #[arg(required = true)]
+    pub scenes: Vec<PathBuf>,
+    /// Print the problems as JSON on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(super) struct InfoArguments {
+    /// A scene; without one, the machine
+    pub scene: Option<PathBuf>,
+    /// Print JSON on standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(super) struct NewArguments {
+    /// The folder to make
+    pub folder: PathBuf,
+    /// Make a plugin crate with a component of its own instead of a scene
+    #[arg(long)]
+    pub plugin: bool,
+    /// For a plugin: the checkout of Tyndall to build against, instead of the published crate
+    #[arg(long, value_name = "FOLDER", requires = "plugin")]
+    pub tyndall: Option<PathBuf>,
+}
+
+fn size(text: &str) -> Result<UVec2, String> {
+    let pixels = |text: &str| text.parse::<u32>().ok().filter(|pixels| *pixels > 0);
+    let parsed = text
+        .split_once(['x', 'X'])
+        .and_then(|(across, down)| Some(UVec2::new(pixels(across)?, pixels(down)?)));
+    parsed.ok_or_else(|| "expected WIDTHxHEIGHT in pixels, such as 960x540".into())
+}
+
+fn frames(text: &str) -> Result<Range<u64>, String> {
+    let parsed =
+        text.split_once("..").and_then(|(from, to)| Some(from.trim().parse().ok()?..to.trim().parse().ok()?));
+    parsed
+        .filter(|frames: &Range<u64>| !frames.is_empty())
+        .ok_or_else(|| "expected A..B with A below B, such as 0..25".into())
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let parsed = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
+    parsed.ok_or_else(|| "expected a number above 0".into())
+}
+
+fn picture_path(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    match path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase).as_deref() {
+        Some("png" | "exr") => Ok(path),
+        _ => Err("a picture is written as .png or .exr".into()),
+    }
+}

@@ -1,0 +1,51 @@
+//! `tyndall check`.
+
+use super::arguments::CheckArguments;
+use super::exit::{self, Failure};
+use crate::render;
+use crate::scene::{Problem, Severity};
+use bevy_app::App;
+use bevy_ecs::prelude::*;
+use std::path::Path;
+
+pub(super) fn run(app: &mut App, arguments: &CheckArguments) -> Result<(), Failure> {
+    let mut fine = true;
+    let mut all = Vec::new();
+    for scene in &arguments.scenes {
+        let problems = check(app, scene);
+        fine &= problems.iter().all(|problem| problem.severity != Severity::Error);
+        if arguments.json {
+            all.extend(problems.iter().map(|problem| describe(scene, problem)));
+        } else {
+            exit::print(&problems);
+            eprintln!("{}: {}", scene.display(), exit::count(&problems));
+        }
+    }
+    if arguments.json {
+        println!("{:#}", serde_json::Value::from(all));
+    }
+    if fine { Ok(()) } else { Err(Failure::Input) }
+}
+
+/// Every problem of a scene, those of the files that its components name included.
+pub(super) fn check(app: &mut App, scene: &Path) -> Vec<Problem> {
+    let document = render::load_scene(app, scene, &[]);
+    if !document.has_errors() {
+        app.update();
+    }
+    render::problems(app.world(), &document)
+}
+
+fn describe(scene: &Path, problem: &Problem) -> serde_json::Value {
+    let place = problem.place.as_ref().map(|place| {
+        let (line, column) = place.file.line_column(place.bytes.start);
+        serde_json::json!({ "file": place.file.path(), "line": line, "column": column, "bytes": [place.bytes.start, place.bytes.end] })
+    });
+    serde_json::json!({
+        "scene": scene,
+        "severity": match problem.severity { Severity::Note => "note", Severity::Error => "error" },
+        "message": problem.message,
+        "help": problem.help,
+        "place": place,
+    })
+}

@@ -1,0 +1,88 @@
+//! `tyndall info`.
+
+use super::arguments::InfoArguments;
+use super::exit::{self, Failure};
+use super::render::gpu_description;
+use crate::gpu::{Gpu, GpuOptions};
+use crate::loading::{Contents, contents};
+use crate::render;
+use bevy_app::App;
+use serde_json::{Value, json};
+
+pub(super) fn run(app: &mut App, arguments: &InfoArguments) -> Result<(), Failure> {
+    let facts = match &arguments.scene {
+        Some(scene) => {
+            let document = render::load_scene(app, scene, &[]);
+            if !document.has_errors() {
+                app.update();
+            }
+            let problems = render::problems(app.world(), &document);
+            exit::print(&problems);
+            if problems.iter().any(|problem| problem.severity == crate::scene::Severity::Error) {
+                return Err(Failure::Input);
+            }
+            let entities = contents(app.world_mut());
+            entities
+                .iter()
+                .map(|(name, contents)| (name.clone(), describe(contents)))
+                .collect::<serde_json::Map<_, _>>()
+                .into()
+        }
+        None => machine()?,
+    };
+    if arguments.json {
+        println!("{facts:#}");
+    } else {
+        print!("{}", lines(&facts, 0));
+    }
+    Ok(())
+}
+
+fn machine() -> Result<Value, Failure> {
+    let gpu = pollster::block_on(Gpu::new(&GpuOptions::default()))?;
+    let limits = gpu.device.limits();
+    Ok(json!({
+        "tyndall": env!("CARGO_PKG_VERSION"),
+        "adapter": gpu_description(&gpu),
+        "limits": {
+            "picture": limits.max_texture_dimension_2d,
+            "volume side": limits.max_texture_dimension_3d,
+            "volumes at once": limits.max_sampled_textures_per_shader_stage - 1,
+            "mesh buffer bytes": limits.max_buffer_size,
+            "table buffer bytes": limits.max_storage_buffer_binding_size,
+        },
+    }))
+}
+
+fn describe(contents: &Contents) -> Value {
+    match contents {
+        Contents::Mesh(mesh) => json!({
+            "vertices": mesh.vertices,
+            "triangles": mesh.triangles,
+            "area": mesh.area,
+            "open edges": mesh.open_edges,
+            "non-manifold edges": mesh.non_manifold_edges,
+            "components": mesh.components,
+            "bounds": mesh.bounds.map(|(low, high)| [low.to_array(), high.to_array()]),
+        }),
+        Contents::Volume { size, format, spacing, range, non_finite } => json!({
+            "size": size,
+            "format": format!("{format:?}"),
+            "spacing mm": spacing.to_array(),
+            "range": [range.0, range.1],
+            "non-finite": non_finite,
+        }),
+    }
+}
+
+/// Nested facts as indented lines.
+fn lines(facts: &Value, depth: usize) -> String {
+    let Value::Object(facts) = facts else { return String::new() };
+    let indent = "  ".repeat(depth);
+    let line = |(name, value): (&String, &Value)| match value {
+        Value::Object(_) => format!("{indent}{name}\n{}", lines(value, depth + 1)),
+        Value::String(text) => format!("{indent}{name}: {text}\n"),
+        other => format!("{indent}{name}: {other}\n"),
+    };
+    facts.iter().map(line).collect()
+}

@@ -1,0 +1,63 @@
+//! `tyndall new`.
+
+use super::arguments::NewArguments;
+use super::exit::Failure;
+use super::output;
+use std::path::Path;
+
+pub(super) fn run(arguments: &NewArguments) -> Result<(), Failure> {
+    let folder = &arguments.folder;
+    if folder.read_dir().is_ok_and(|mut entries| entries.next().is_some()) {
+        return Err(Failure::Usage(format!("{} is not empty; nothing was written", folder.display())));
+    }
+    let files = if arguments.plugin { plugin(folder, arguments.tyndall.as_deref())? } else { scene() };
+    for (name, contents) in files {
+        let path = folder.join(name);
+        if let Some(parent) = path.parent() {
+            let made = std::fs::create_dir_all(parent);
+            made.map_err(|error| {
+                Failure::Usage(format!("cannot make the folder {}: {error}", parent.display()))
+            })?;
+        }
+        output::write(&path, &contents)?;
+        eprintln!("wrote {}", path.display());
+    }
+    Ok(())
+}
+
+type Files = Vec<(&'static str, Vec<u8>)>;
+
+fn scene() -> Files {
+    vec![("scene.ron", include_bytes!("templates/scene.ron").to_vec()), ("scene.raw", cloud())]
+}
+
+/// 8 x 8 x 8 samples that fall off from the middle.
+fn cloud() -> Vec<u8> {
+    let centred = |index: usize| (index as f32 - 3.5) / 3.5;
+    let cell = |index: usize| [index % 8, index / 8 % 8, index / 64].map(centred);
+    (0..512)
+        .map(|index| (255.0 * (1.0 - cell(index).map(|x| x * x).iter().sum::<f32>()).max(0.0)) as u8)
+        .collect()
+}
+
+fn plugin(folder: &Path, checkout: Option<&Path>) -> Result<Files, Failure> {
+    let name = folder
+        .file_name()
+        .map(|name| name.to_string_lossy().replace([' ', '.'], "_"))
+        .unwrap_or_else(|| "my_plugin".into());
+    let tyndall = match checkout {
+        Some(checkout) => {
+            let absolute = checkout.canonicalize();
+            let absolute = absolute
+                .map_err(|error| Failure::Usage(format!("cannot find {}: {error}", checkout.display())))?;
+            format!("{{ path = {:?} }}", absolute.display().to_string())
+        }
+        None => format!("{:?}", env!("CARGO_PKG_VERSION")),
+    };
+    let manifest = include_str!("templates/plugin.toml").replace("NAME", &name).replace("TYNDALL", &tyndall);
+    Ok(vec![
+        ("Cargo.toml", manifest.into_bytes()),
+        ("src/main.rs", include_bytes!("templates/plugin.rs").to_vec()),
+        ("scene.ron", include_bytes!("templates/plugin_scene.ron").to_vec()),
+    ])
+}

@@ -1,0 +1,119 @@
+//! `tyndall render`.
+
+use super::arguments::RenderArguments;
+use super::exit::{self, Failure};
+use super::{output, progress};
+use crate::components::ViewCamera;
+use crate::gpu::{Gpu, GpuOptions};
+use crate::render::{self, RenderError};
+use crate::report::Report;
+use crate::scene::{Problem, Severity, nearest};
+use crate::{Picture, SceneTime};
+use bevy_app::App;
+use bevy_ecs::prelude::*;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+pub(super) fn run(app: &mut App, arguments: &RenderArguments, started: Instant) -> Result<(), Failure> {
+    output::check_folder(&arguments.output)?;
+    app.world_mut().resource_mut::<Report>().spent("start", started);
+    // The driver takes its time to wake up; meanwhile the scene is read.
+    let options = GpuOptions { portable: arguments.portable };
+    let gpu = std::thread::spawn(move || (pollster::block_on(Gpu::new(&options)), Instant::now()));
+    let document = render::load_scene(app, &arguments.scene, &arguments.overrides);
+    if document.has_errors() {
+        exit::print(&document.problems);
+        return Err(Failure::Input);
+    }
+    check_camera(app.world_mut(), arguments.camera.as_deref())?;
+    let waiting = Instant::now();
+    let (gpu, _) = gpu
+        .join()
+        .map_err(|_| Failure::Machine("the graphics driver panicked while it was opened".into()))?;
+    app.insert_resource(gpu?);
+    app.insert_resource(Picture {
+        size: arguments.size,
+        camera: arguments.camera.clone(),
+        encoded: !output::wants_radiance(&arguments.output),
+    });
+    let mut report = app.world_mut().resource_mut::<Report>();
+    report.spent("wait for the driver", waiting);
+    report.measure = arguments.stats.is_some();
+
+    let frames = arguments.frames.clone().unwrap_or(0..1);
+    let bar = progress::bar(frames.end - frames.start);
+    for frame in frames {
+        app.world_mut().insert_resource(SceneTime { seconds: frame as f64 / arguments.fps });
+        let path = frame_path(&arguments.output, arguments.frames.is_some().then_some(frame));
+        let drawn = render::render(app);
+        if let Err(RenderError::Scene) = drawn {
+            bar.finish_and_clear();
+            exit::print(&render::problems(app.world(), &document));
+        }
+        let image = drawn?;
+        let writing = Instant::now();
+        output::write_image(&path, &image)?;
+        app.world_mut().resource_mut::<Report>().spent("write", writing);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    exit::print(&notes(&render::problems(app.world(), &document)));
+    if let Some(path) = &arguments.stats {
+        write_stats(app.world(), path, started)?;
+    }
+    Ok(())
+}
+
+fn notes(problems: &[Problem]) -> Vec<Problem> {
+    problems.iter().filter(|problem| problem.severity == Severity::Note).cloned().collect()
+}
+
+fn check_camera(world: &mut World, wanted: Option<&str>) -> Result<(), Failure> {
+    let Some(wanted) = wanted else { return Ok(()) };
+    let mut cameras = world.query_filtered::<&Name, With<ViewCamera>>();
+    let names: Vec<&str> = cameras.iter(world).map(Name::as_str).collect();
+    if names.contains(&wanted) {
+        return Ok(());
+    }
+    let help = match nearest(wanted, names.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None if names.is_empty() => "the scene has no ViewCamera".into(),
+        None => format!("the scene has: {}", names.join(", ")),
+    };
+    Err(Failure::Usage(format!("there is no camera `{wanted}`: {help}")))
+}
+
+/// `out.png`, or `out_0007.png` for a frame.
+fn frame_path(output: &Path, frame: Option<u64>) -> PathBuf {
+    let Some(frame) = frame else { return output.to_owned() };
+    let stem = output.file_stem().unwrap_or_default().to_string_lossy();
+    let ending = output.extension().unwrap_or_default().to_string_lossy();
+    output.with_file_name(format!("{stem}_{frame:04}.{ending}"))
+}
+
+fn write_stats(world: &World, path: &Path, started: Instant) -> Result<(), Failure> {
+    let gpu = world.resource::<Gpu>();
+    let report = world.resource::<Report>();
+    let stats = serde_json::json!({
+        "adapter": gpu_description(gpu),
+        "passes": report.passes,
+        "pipelines": report.pipelines,
+        "gpu_bytes": report.gpu_bytes,
+        "timeline_ms": report.timeline,
+        "total_ms": started.elapsed().as_secs_f64() * 1e3,
+    });
+    output::write(path, format!("{stats:#}\n").as_bytes())
+}
+
+/// Who the adapter is, and which variants it gets.
+pub(super) fn gpu_description(gpu: &Gpu) -> serde_json::Value {
+    let formats = crate::gpu::VolumeFormat::all(gpu);
+    serde_json::json!({
+        "name": gpu.info.name,
+        "driver": format!("{} {}", gpu.info.driver, gpu.info.driver_info).trim(),
+        "backend": gpu.info.backend.to_string(),
+        "kind": format!("{:?}", gpu.info.device_type),
+        "timestamps": gpu.has(wgpu::Features::TIMESTAMP_QUERY),
+        "volume_formats": formats,
+    })
+}

@@ -1,0 +1,143 @@
+//! A draw: one shader, one bind group, one colour target.
+
+use super::{Gpu, GpuError, shader};
+
+/// A render pipeline and the layout of its bind group 0.
+#[derive(Debug)]
+pub struct Draw {
+    label: &'static str,
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+/// What a [`Draw`] is made of.
+pub struct DrawDescriptor<'a> {
+    /// Stem of the shader file, and label.
+    pub name: &'static str,
+    /// Modules of the shader made for this use.
+    pub generated: &'a [(&'a str, String)],
+    /// Vertex and fragment entry points.
+    pub entry_points: (&'a str, &'a str),
+    /// What is bound, in the order of the bindings from 0.
+    pub bindings: &'a [wgpu::BindingType],
+    /// Floats of each vertex attribute, interleaved; none for a full-screen draw.
+    pub attributes: &'a [wgpu::VertexAttribute],
+    /// Format of the colour target.
+    pub format: wgpu::TextureFormat,
+    /// Whether the nearest fragment wins, with reversed depth.
+    pub depth: bool,
+}
+
+impl Draw {
+    /// Compiles the shader and makes the pipeline.
+    pub fn new(gpu: &Gpu, descriptor: &DrawDescriptor) -> Result<Self, GpuError> {
+        let module = shader::module(gpu, descriptor.name, descriptor.generated)?;
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let entries: Vec<_> =
+            descriptor.bindings.iter().enumerate().map(|(index, ty)| entry(index, *ty)).collect();
+        let label = Some(descriptor.name);
+        let layout = gpu
+            .device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
+        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label,
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let stride = descriptor.attributes.iter().map(|attribute| attribute.format.size()).sum();
+        let vertices = wgpu::VertexBufferLayout {
+            array_stride: stride,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: descriptor.attributes,
+        };
+        let buffers = [Some(vertices)];
+        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label,
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(descriptor.entry_points.0),
+                compilation_options: Default::default(),
+                buffers: if descriptor.attributes.is_empty() { &[] } else { &buffers },
+            },
+            primitive: Default::default(),
+            depth_stencil: descriptor.depth.then(|| wgpu::DepthStencilState {
+                format: wgpu::TextureFormat::Depth32Float,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Greater),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(descriptor.entry_points.1),
+                compilation_options: Default::default(),
+                targets: &[Some(descriptor.format.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        match pollster::block_on(scope.pop()) {
+            Some(error) => Err(GpuError::Shader(format!("{}.wgsl", descriptor.name), error.to_string())),
+            None => Ok(Self { label: descriptor.name, pipeline, layout }),
+        }
+    }
+
+    /// Binds resources in the order of the bindings.
+    pub fn bind(&self, gpu: &Gpu, resources: &[wgpu::BindingResource]) -> wgpu::BindGroup {
+        let entries: Vec<_> = resources
+            .iter()
+            .enumerate()
+            .map(|(index, resource)| wgpu::BindGroupEntry {
+                binding: index as u32,
+                resource: resource.clone(),
+            })
+            .collect();
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(self.label),
+            layout: &self.layout,
+            entries: &entries,
+        })
+    }
+
+    /// Makes the pipeline and the bind group current.
+    pub fn begin(&self, pass: &mut wgpu::RenderPass, bind_group: &wgpu::BindGroup) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, bind_group, &[]);
+    }
+}
+
+fn entry(index: usize, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding: index as u32,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+        ty,
+        count: None,
+    }
+}
+
+/// The kinds of binding that draws use.
+pub mod binding {
+    /// A uniform buffer.
+    pub const UNIFORM: wgpu::BindingType = buffer(wgpu::BufferBindingType::Uniform);
+    /// A storage buffer that is only read.
+    pub const STORAGE: wgpu::BindingType = buffer(wgpu::BufferBindingType::Storage { read_only: true });
+    /// A 2D texture of floats that is read texel by texel.
+    pub const TEXTURE: wgpu::BindingType = texture(wgpu::TextureViewDimension::D2, false);
+    /// A sampler that filters.
+    pub const SAMPLER: wgpu::BindingType = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+
+    const fn buffer(ty: wgpu::BufferBindingType) -> wgpu::BindingType {
+        wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None }
+    }
+
+    /// A texture of floats; `filterable` where a sampler filters it.
+    pub const fn texture(view_dimension: wgpu::TextureViewDimension, filterable: bool) -> wgpu::BindingType {
+        wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable },
+            view_dimension,
+            multisampled: false,
+        }
+    }
+}

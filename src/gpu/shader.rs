@@ -1,0 +1,71 @@
+//! Shaders and what they share: `#import name` brings in `shaders/shared/name.wgsl` once.
+
+use super::{Gpu, GpuError};
+use std::borrow::Cow;
+
+macro_rules! sources {
+    ($($name:literal => $path:literal),* $(,)?) => {
+        /// Every shader file by its name, as built into the program.
+        pub const SOURCES: &[(&str, &str)] = &[$(($name, include_str!(concat!("../../shaders/", $path)))),*];
+    };
+}
+
+sources! {
+    "frame" => "shared/frame.wgsl",
+    "fullscreen" => "shared/fullscreen.wgsl",
+    "raycast" => "raycast.wgsl",
+    "surface" => "surface.wgsl",
+    "tonemap" => "tonemap.wgsl",
+}
+
+/// The text of a shader with all its imports in front of what needs them. `generated` are modules made for this use.
+pub fn expand(name: &str, generated: &[(&str, String)]) -> Result<String, GpuError> {
+    let mut text = String::new();
+    append(name, generated, &mut Vec::new(), &mut text)?;
+    Ok(text)
+}
+
+fn append<'a>(
+    name: &'a str,
+    generated: &'a [(&str, String)],
+    done: &mut Vec<&'a str>,
+    text: &mut String,
+) -> Result<(), GpuError> {
+    done.push(name);
+    for (index, line) in source(name, generated).unwrap_or_default().lines().enumerate() {
+        let Some(import) = line.strip_prefix("#import ").map(str::trim) else {
+            text.push_str(line);
+            text.push('\n');
+            continue;
+        };
+        if done.contains(&import) {
+            continue;
+        }
+        if source(import, generated).is_none() {
+            return Err(GpuError::Import {
+                file: format!("{name}.wgsl"),
+                line: index + 1,
+                import: import.into(),
+            });
+        }
+        append(import, generated, done, text)?;
+    }
+    Ok(())
+}
+
+fn source<'a>(name: &str, generated: &'a [(&str, String)]) -> Option<&'a str> {
+    let made = generated.iter().find(|(known, _)| *known == name).map(|(_, text)| text.as_str());
+    made.or_else(|| SOURCES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text))
+}
+
+/// Compiles a shader. Errors are those of naga, with the text around them.
+pub fn module(gpu: &Gpu, name: &str, generated: &[(&str, String)]) -> Result<wgpu::ShaderModule, GpuError> {
+    let text = expand(name, generated)?;
+    let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let source = wgpu::ShaderSource::Wgsl(Cow::Owned(text));
+    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(name), source });
+    match pollster::block_on(scope.pop()) {
+        Some(error) => Err(GpuError::Shader(format!("{name}.wgsl"), error.to_string())),
+        None => Ok(module),
+    }
+}

@@ -1,0 +1,40 @@
+use super::{Gpu, GpuError};
+use glam::UVec2;
+
+/// A 2D texture that passes write and read.
+#[derive(Debug)]
+pub struct Target {
+    /// The texture.
+    pub texture: wgpu::Texture,
+    /// All of it.
+    pub view: wgpu::TextureView,
+}
+
+impl Target {
+    /// A target of `size` pixels.
+    pub fn new(gpu: &Gpu, label: &str, size: UVec2, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
+        let limit = gpu.device.limits().max_texture_dimension_2d;
+        if size.max_element() > limit {
+            return Err(GpuError::PictureTooLarge { width: size.x, height: size.y, limit });
+        }
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        Ok(Self { view: texture.create_view(&Default::default()), texture })
+    }
+
+    /// Bytes that the texels take.
+    pub fn bytes(&self) -> u64 {
+        let texel = u64::from(self.texture.format().block_copy_size(None).unwrap_or(4));
+        u64::from(self.texture.width()) * u64::from(self.texture.height()) * texel
+    }
+}

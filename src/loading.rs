@@ -1,0 +1,170 @@
+//! The files that components name, read into the world.
+
+use crate::Stage;
+use crate::components::{Auto, Mesh, Placement, Volume};
+use crate::scene::{Problem, Problems};
+use crate::sources::{self, MeshData, MeshStatistics, RawLayout, SourceError, VolumeData};
+use bevy_app::{App, Plugin, Update};
+use bevy_ecs::prelude::*;
+use glam::{DVec3, Vec3};
+
+/// Reads meshes and volumes when the components that name them change.
+pub(crate) struct LoadingPlugin;
+
+impl Plugin for LoadingPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(Update, (load_meshes, load_volumes).in_set(Stage::Load));
+    }
+}
+
+/// The triangles of a [`Mesh`], until they are on the GPU.
+#[derive(Component, Debug)]
+pub struct LoadedMesh {
+    /// The triangles; taken away once they are uploaded.
+    pub data: Option<MeshData>,
+    /// Corners of the box around the mesh, in the mesh's own space.
+    pub bounds: (Vec3, Vec3),
+}
+
+/// The samples of a [`Volume`], until they are on the GPU.
+#[derive(Component, Debug)]
+pub struct LoadedVolume {
+    /// Samples, ranges and bricks; the samples are taken away once they are uploaded.
+    pub data: VolumeData,
+    /// Whether `data` still has its samples.
+    pub has_samples: bool,
+}
+
+impl LoadedVolume {
+    /// Half of what the volume measures along its axes, mm.
+    pub fn half_extent(&self) -> Vec3 {
+        Vec3::from(self.data.size.map(|voxels| voxels as f32)) * self.data.spacing * 0.5
+    }
+
+    /// The data values at the ends of a transfer function's domain: those written, the range of an integer format, or of the data.
+    pub fn domain(&self, written: Auto<glam::Vec2>) -> (f32, f32) {
+        let automatic = self.data.samples.format().integer_range().unwrap_or(self.data.range);
+        match written {
+            Auto::Value(domain) => (domain.x, domain.y),
+            Auto::Auto if automatic.0 < automatic.1 => automatic,
+            // Constant data has no range; any domain that holds the value does.
+            Auto::Auto => (automatic.0, automatic.0 + automatic.0.abs().max(1.0)),
+        }
+    }
+}
+
+/// The corners of a box in its own space.
+pub(crate) fn corners((low, high): (Vec3, Vec3)) -> impl Iterator<Item = DVec3> {
+    (0..8).map(move |corner| {
+        let pick = |axis: usize| f64::from(if corner >> axis & 1 == 0 { low[axis] } else { high[axis] });
+        DVec3::new(pick(0), pick(1), pick(2))
+    })
+}
+
+/// The corners of an entity's box in the scene.
+pub(crate) fn placed_corners(placement: &Placement, bounds: (Vec3, Vec3)) -> impl Iterator<Item = DVec3> {
+    let scene_from_entity = placement.0;
+    corners(bounds).map(move |corner| scene_from_entity.transform_point3(corner))
+}
+
+fn load_meshes(
+    mut commands: Commands,
+    meshes: Query<(Entity, &Mesh), Changed<Mesh>>,
+    mut problems: ResMut<Problems>,
+) {
+    for (entity, mesh) in &meshes {
+        match read_mesh(mesh) {
+            Ok(data) => {
+                problems
+                    .0
+                    .extend(data.notes.iter().map(|note| Problem::note(note.clone()).on(entity, "Mesh")));
+                let bounds = data.bounds().unwrap_or_default();
+                commands.entity(entity).insert(LoadedMesh { data: Some(data), bounds });
+            }
+            Err(error) => problems.0.push(Problem::error(error.to_string()).on(entity, "Mesh")),
+        }
+    }
+}
+
+fn read_mesh(mesh: &Mesh) -> Result<MeshData, SourceError> {
+    Ok(match mesh {
+        Mesh::File(path) => sources::read_obj(path.path())?,
+        Mesh::Sphere { radius, subdivisions } => sources::procedural::sphere(*radius, *subdivisions),
+        Mesh::Box { size } => sources::procedural::cuboid(*size),
+        Mesh::Plane { size } => sources::procedural::plane(*size),
+        Mesh::CornellBox => sources::procedural::cornell_box(),
+    })
+}
+
+fn load_volumes(
+    mut commands: Commands,
+    volumes: Query<(Entity, &Volume), Changed<Volume>>,
+    mut problems: ResMut<Problems>,
+) {
+    for (entity, volume) in &volumes {
+        match read_volume(volume) {
+            Ok(data) => {
+                if data.non_finite > 0 {
+                    let note = format!(
+                        "{} of {} samples are not finite; they are drawn as transparent",
+                        data.non_finite,
+                        data.samples.len()
+                    );
+                    problems.0.push(Problem::note(note).on(entity, "Volume"));
+                }
+                commands.entity(entity).insert(LoadedVolume { data, has_samples: true });
+            }
+            Err(error) => problems.0.push(Problem::error(error.to_string()).on(entity, "Volume")),
+        }
+    }
+}
+
+fn read_volume(volume: &Volume) -> Result<VolumeData, SourceError> {
+    let Volume::Raw { path, size, format, endian, spacing, skip_bytes } = volume;
+    let layout = RawLayout {
+        size: size.to_array(),
+        format: *format,
+        endian: *endian,
+        spacing: *spacing,
+        skip_bytes: *skip_bytes,
+    };
+    sources::read_raw(path.path(), &layout)
+}
+
+/// What a scene holds, for people and machines.
+#[derive(Clone, Debug)]
+pub enum Contents {
+    /// A mesh.
+    Mesh(MeshStatistics),
+    /// A volume.
+    Volume {
+        /// Voxels along x, y and z.
+        size: [u32; 3],
+        /// Type of a sample.
+        format: sources::SampleFormat,
+        /// Millimetres between voxel centres.
+        spacing: Vec3,
+        /// Least and greatest finite sample.
+        range: (f32, f32),
+        /// Samples that are NaN or infinite.
+        non_finite: u64,
+    },
+}
+
+/// What each entity of the world holds, by name, in alphabetical order. Only what is not yet uploaded can be looked at.
+pub fn contents(world: &mut World) -> Vec<(String, Contents)> {
+    let mut query = world.query::<(&Name, Option<&LoadedMesh>, Option<&LoadedVolume>)>();
+    let mut all = Vec::new();
+    for (name, mesh, volume) in query.iter(world) {
+        if let Some(data) = mesh.and_then(|mesh| mesh.data.as_ref()) {
+            all.push((name.to_string(), Contents::Mesh(data.statistics())));
+        }
+        if let Some(LoadedVolume { data, .. }) = volume {
+            let (size, format) = (data.size, data.samples.format());
+            let (spacing, range, non_finite) = (data.spacing, data.range, data.non_finite);
+            all.push((name.to_string(), Contents::Volume { size, format, spacing, range, non_finite }));
+        }
+    }
+    all.sort_by(|a, b| a.0.cmp(&b.0));
+    all
+}

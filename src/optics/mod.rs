@@ -1,0 +1,3 @@
+//! Formulas, pure: no entity, no GPU.
+
+pub mod transfer;

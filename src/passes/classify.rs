@@ -1,0 +1,114 @@
+//! Transfer functions become lookup tables, and bricks of volumes are found empty or not.
+//!
+//! Reads components and the ranges of bricks; writes [`Classified`]: a table of colour and extinction, and for each brick of 8^3
+//! voxels how far the nearest one is that holds anything. Reruns for a volume when its transfer function, data, or the unit of the scene
+//! changes.
+
+use crate::components::{SceneSettings, TransferFunction, Volume};
+use crate::loading::LoadedVolume;
+use crate::optics::transfer::LookupTable;
+use crate::report::Report;
+use bevy_ecs::prelude::*;
+
+/// What a transfer function makes of a volume.
+#[derive(Component, Debug)]
+pub(crate) struct Classified {
+    /// Colour and extinction per scene unit, over `domain`.
+    pub table: LookupTable,
+    /// The data values at both ends of the table.
+    pub domain: (f32, f32),
+    /// Bricks along each axis.
+    pub bricks: [u32; 3],
+    /// Distance of each brick from the nearest that holds something, in bricks, at most 255; 0 is such a brick.
+    pub distances: Vec<u8>,
+}
+
+type Changes = Or<(Changed<TransferFunction>, Changed<LoadedVolume>)>;
+
+pub(crate) fn classify(
+    mut commands: Commands,
+    volumes: Query<(Entity, Ref<TransferFunction>, Ref<LoadedVolume>), With<Volume>>,
+    changed: Query<(), Changes>,
+    settings: Res<SceneSettings>,
+    mut report: ResMut<Report>,
+) {
+    for (entity, function, volume) in &volumes {
+        if !changed.contains(entity) && !settings.is_changed() {
+            continue;
+        }
+        let domain = volume.domain(function.domain);
+        let voxel = volume.data.spacing.min_element();
+        let table = LookupTable::new(&function, domain, voxel, settings.millimetres_per_unit);
+        let bricks = &volume.data.bricks;
+        let held = table.holds_something();
+        let occupied: Vec<bool> = bricks
+            .ranges
+            .iter()
+            .map(|range| held.between(table.position(domain, range[0]), table.position(domain, range[1])))
+            .collect();
+        let distances = distances(bricks.size, &occupied);
+        report
+            .ran("classify", &[("entries", table.entries.len() as u64), ("bricks", distances.len() as u64)]);
+        commands.entity(entity).insert(Classified { table, domain, bricks: bricks.size, distances });
+    }
+}
+
+/// Distance of each cell from the nearest occupied one, as a king moves in three dimensions, at most 255.
+fn distances(size: [u32; 3], occupied: &[bool]) -> Vec<u8> {
+    let mut distances: Vec<u8> = occupied.iter().map(|occupied| if *occupied { 0 } else { 255 }).collect();
+    let [x, y, z] = size.map(|side| side as usize);
+    // The Chebyshev distance is separable only as a minimum over boxes: each axis in turn spreads the maximum of distance and offset.
+    spread(&mut distances, x, 1, |line| line * x, y * z);
+    spread(&mut distances, y, x, |line| line / x * (x * y) + line % x, x * z);
+    spread(&mut distances, z, x * y, |line| line, x * y);
+    distances
+}
+
+/// One axis of [`distances`]: `d[i] = min over j of max(d[j], |i - j|)` along every line.
+fn spread(distances: &mut [u8], length: usize, stride: usize, start: impl Fn(usize) -> usize, lines: usize) {
+    let mut line = vec![0u8; length];
+    for index in 0..lines {
+        let first = start(index);
+        for (cell, value) in line.iter_mut().enumerate() {
+            *value = distances[first + cell * stride];
+        }
+        for cell in 0..length {
+            let mut best = line[cell];
+            let mut offset = 1;
+            while offset < usize::from(best) && (offset <= cell || cell + offset < length) {
+                let before = if offset <= cell { line[cell - offset] } else { 255 };
+                let behind = line.get(cell + offset).copied().unwrap_or(255);
+                best = best.min(before.min(behind).max(offset.min(255) as u8));
+                offset += 1;
+            }
+            distances[first + cell * stride] = best;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_those_of_a_king() {
+        let size = [7, 5, 6];
+        let cells: Vec<[i32; 3]> =
+            (0..6).flat_map(|z| (0..5).flat_map(move |y| (0..7).map(move |x| [x, y, z]))).collect();
+        let set = [[0, 0, 0], [6, 4, 3], [2, 3, 5]];
+        let occupied: Vec<bool> = cells.iter().map(|cell| set.contains(cell)).collect();
+        let expected: Vec<u8> = cells
+            .iter()
+            .map(|cell| {
+                set.iter()
+                    .map(|other| {
+                        (0..3).map(|axis| (cell[axis] - other[axis]).unsigned_abs() as u8).max().unwrap()
+                    })
+                    .min()
+                    .unwrap()
+            })
+            .collect();
+        assert_eq!(distances(size, &occupied), expected);
+        assert!(distances([3, 1, 1], &[false; 3]).iter().all(|distance| *distance == 255));
+    }
+}

@@ -1,0 +1,410 @@
+//! Volumes by ray casting, over what the surface pass left.
+//!
+//! Reads volume textures, lookup tables, brick distances and the surface; writes [`RayCaster::radiance`], rgba32float, one texel a
+//! pixel: radiance, and how many samples it took. Runs each frame in which a volume is there. The shader is made for the number of volumes,
+//! since each needs a texture binding of its own: their number is limited by what the adapter can bind at once.
+
+use super::classify::{Classified, classify};
+use super::surface::Surface;
+use super::upload::{SENTINEL_THRESHOLD, VolumeTexture, VolumeUploadPlugin};
+use crate::components::{Placement, RayCast as RayCastSettings, SceneSettings, VolumeLighting};
+use crate::gpu::{
+    Draw, DrawDescriptor, Filtering, Gpu, GpuError, PassTimer, Target, binding, storage_buffer,
+};
+use crate::loading::LoadedVolume;
+use crate::render::Failure;
+use crate::scene::{Problem, Problems};
+use crate::view::{FrameBuffers, Picture, View, far_background};
+use crate::{Stage, report::Report};
+use bevy_app::{App, Plugin, Update};
+use bevy_ecs::prelude::*;
+use encase::ShaderType;
+use glam::{DAffine3, DVec3, Mat4, UVec3, Vec3};
+use std::fmt::Write;
+
+/// Casts rays through volumes.
+pub(crate) struct RayCastPlugin;
+
+impl Plugin for RayCastPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<RayCaster>().add_plugins(VolumeUploadPlugin);
+        app.add_systems(Update, classify.in_set(Stage::Classify))
+            .add_systems(Update, run.in_set(Stage::RayCast).run_if(resource_exists::<Gpu>));
+    }
+}
+
+/// What the pass keeps between frames.
+#[derive(Resource, Default, Debug)]
+pub(crate) struct RayCaster {
+    draw: Option<(Vec<Filtering>, Draw)>,
+    tables: Option<Tables>,
+    target: Option<Target>,
+    sampler: Option<wgpu::Sampler>,
+}
+
+impl RayCaster {
+    /// Radiance and sample count of each pixel, if there is a volume.
+    pub fn radiance(&self) -> Option<&Target> {
+        self.target.as_ref()
+    }
+}
+
+/// The lookup tables and brick distances of all volumes, one behind the other.
+#[derive(Debug)]
+struct Tables {
+    entries: wgpu::Buffer,
+    distances: wgpu::Buffer,
+    /// First entry and first brick of each volume.
+    starts: Vec<(u32, u32)>,
+}
+
+/// Mirror of `VolumeInstance` in `shaders/raycast.wgsl`.
+#[derive(ShaderType, Clone, Debug)]
+pub(crate) struct VolumeInstance {
+    pub texture_from_eye: Mat4,
+    pub size: Vec3,
+    pub step: f32,
+    pub lookup_scale: f32,
+    pub lookup_offset: f32,
+    pub table_start: u32,
+    pub table_entries: u32,
+    pub bricks: UVec3,
+    pub bricks_start: u32,
+    pub least_transmittance: f32,
+    pub skip_empty: u32,
+    pub lighting: u32,
+    pub ambient: f32,
+    pub diffuse: f32,
+    pub specular: f32,
+    pub shininess: f32,
+    pub sentinel: f32,
+}
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// Bindings of the shader in front of the volume textures.
+const FIXED_BINDINGS: u32 = 7;
+
+type VolumeData<'a> = (
+    Entity,
+    &'a LoadedVolume,
+    Ref<'a, Classified>,
+    &'a VolumeTexture,
+    &'a Placement,
+    &'a VolumeLighting,
+    &'a RayCastSettings,
+);
+type Volumes<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static LoadedVolume,
+        Ref<'static, Classified>,
+        &'static VolumeTexture,
+        &'static Placement,
+        &'static VolumeLighting,
+        &'static RayCastSettings,
+    ),
+>;
+
+fn run(
+    (gpu, frame, view, picture, settings): (
+        Res<Gpu>,
+        Res<FrameBuffers>,
+        Res<View>,
+        Res<Picture>,
+        Res<SceneSettings>,
+    ),
+    volumes: Volumes,
+    surface: Res<Surface>,
+    mut caster: ResMut<RayCaster>,
+    mut timer: Option<ResMut<PassTimer>>,
+    (mut report, mut failure, mut problems): (ResMut<Report>, ResMut<Failure>, ResMut<Problems>),
+) {
+    let mut volumes: Vec<_> = volumes.iter().collect();
+    volumes.sort_by_key(|volume| volume.0);
+    let limit = gpu.device.limits().max_sampled_textures_per_shader_stage - 1;
+    if volumes.len() > limit as usize {
+        let message =
+            format!("{} volumes are in the scene; this adapter can show {limit} at once", volumes.len());
+        problems.0.push(
+            Problem::error(message)
+                .help("merge volumes, or leave some out")
+                .on(volumes[limit as usize].0, "Volume"),
+        );
+        return;
+    }
+    if volumes.is_empty() {
+        *caster = RayCaster::default();
+        return;
+    }
+    let timing = timer.as_mut().and_then(|timer| timer.time("raycast"));
+    let drawn = prepare(&gpu, &picture, &volumes, &mut caster, &mut report).map(|()| {
+        let instances = instances(&view, &settings, &volumes, &caster);
+        draw(&gpu, &frame, &settings, &volumes, &instances, &surface, &caster, timing);
+        report.ran("raycast", &[("pixels", u64::from(picture.size.x) * u64::from(picture.size.y))]);
+    });
+    failure.keep(drawn);
+}
+
+/// Makes what is missing or stale: pipeline, tables, target.
+fn prepare(
+    gpu: &Gpu,
+    picture: &Picture,
+    volumes: &[VolumeData],
+    caster: &mut RayCaster,
+    report: &mut Report,
+) -> Result<(), GpuError> {
+    let filtering: Vec<_> = volumes.iter().map(|volume| volume.3.format.filtering).collect();
+    if caster.draw.as_ref().is_none_or(|(made_for, _)| *made_for != filtering) {
+        caster.draw = Some((filtering.clone(), make(gpu, &filtering)?));
+        report.pipelines.push("raycast");
+    }
+    if caster.tables.as_ref().is_none_or(|tables| tables.starts.len() != volumes.len())
+        || volumes.iter().any(|volume| volume.2.is_changed())
+    {
+        let tables = tables(gpu, volumes);
+        report.gpu_bytes.insert("lookup tables", tables.entries.size());
+        report.gpu_bytes.insert("brick distances", tables.distances.size());
+        caster.tables = Some(tables);
+    }
+    caster.sampler.get_or_insert_with(|| {
+        gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("volume"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        })
+    });
+    let size = wgpu::Extent3d { width: picture.size.x, height: picture.size.y, depth_or_array_layers: 1 };
+    if caster.target.as_ref().is_none_or(|target| target.texture.size() != size) {
+        caster.target = None;
+        let target = Target::new(gpu, "raycast", picture.size, FORMAT)?;
+        report.gpu_bytes.insert("raycast", target.bytes());
+        caster.target = Some(target);
+    }
+    Ok(())
+}
+
+fn make(gpu: &Gpu, filtering: &[Filtering]) -> Result<Draw, GpuError> {
+    let fixed = [
+        binding::UNIFORM,
+        binding::STORAGE,
+        binding::STORAGE,
+        binding::STORAGE,
+        binding::STORAGE,
+        binding::TEXTURE,
+        binding::SAMPLER,
+    ];
+    let textures = filtering
+        .iter()
+        .map(|filtering| binding::texture(wgpu::TextureViewDimension::D3, *filtering == Filtering::Sampler));
+    let bindings: Vec<_> = fixed.into_iter().chain(textures).collect();
+    Draw::new(
+        gpu,
+        &DrawDescriptor {
+            name: "raycast",
+            generated: &[("volumes", volumes_module(filtering))],
+            entry_points: ("cover", "march"),
+            bindings: &bindings,
+            attributes: &[],
+            format: FORMAT,
+            depth: false,
+        },
+    )
+}
+
+/// The WGSL module `volumes`: one texture binding a volume, and `texel_at(volume, place)` that interpolates in it.
+pub(crate) fn volumes_module(filtering: &[Filtering]) -> String {
+    let mut text = format!("const VOLUMES = {}u;\n", filtering.len());
+    let mut cases = String::new();
+    for (index, filtering) in filtering.iter().enumerate() {
+        let binding = FIXED_BINDINGS as usize + index;
+        let value = match filtering {
+            Filtering::Sampler => format!("textureSampleLevel(volume_{index}, linear_sampler, place, 0.0).r"),
+            Filtering::Shader => {
+                text.push_str(&eight_loads(index));
+                format!("trilinear_{index}(place)")
+            }
+        };
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "@group(0) @binding({binding}) var volume_{index}: texture_3d<f32>;");
+        let label = if index == 0 { "default".into() } else { format!("case {index}u") };
+        let _ = writeln!(cases, "        {label}: {{ return {value}; }}");
+    }
+    let _ = write!(
+        text,
+        "fn texel_at(volume: u32, place: vec3f) -> f32 {{\n    switch volume {{\n{cases}    }}\n}}\n"
+    );
+    text
+}
+
+/// Trilinear interpolation with eight loads, clamped at the border.
+fn eight_loads(index: usize) -> String {
+    format!(
+        "fn trilinear_{index}(place: vec3f) -> f32 {{
+    let last = vec3i(textureDimensions(volume_{index})) - 1;
+    let at = place * vec3f(textureDimensions(volume_{index})) - 0.5;
+    let low = vec3i(floor(at));
+    let part = at - floor(at);
+    var rows: array<f32, 4>;
+    for (var row = 0; row < 4; row += 1) {{
+        let y = low.y + (row & 1);
+        let z = low.z + (row >> 1u);
+        let a = textureLoad(volume_{index}, clamp(vec3i(low.x, y, z), vec3i(0), last), 0).r;
+        let b = textureLoad(volume_{index}, clamp(vec3i(low.x + 1, y, z), vec3i(0), last), 0).r;
+        rows[row] = mix(a, b, part.x);
+    }}
+    return mix(mix(rows[0], rows[1], part.y), mix(rows[2], rows[3], part.y), part.z);
+}}
+"
+    )
+}
+
+fn tables(gpu: &Gpu, volumes: &[VolumeData]) -> Tables {
+    let (mut entries, mut distances, mut starts) = (Vec::new(), Vec::new(), Vec::new());
+    for (_, _, classified, ..) in volumes {
+        starts.push((entries.len() as u32, distances.len() as u32));
+        entries.extend_from_slice(&classified.table.entries);
+        distances.extend_from_slice(&classified.distances);
+    }
+    distances.resize(distances.len().next_multiple_of(4), 0);
+    let words: Vec<u32> = distances
+        .chunks_exact(4)
+        .map(|bytes| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
+        .collect();
+    Tables {
+        entries: storage_buffer(gpu, "lookup tables", &entries),
+        distances: storage_buffer(gpu, "brick distances", &words),
+        starts,
+    }
+}
+
+fn instances(
+    view: &View,
+    settings: &SceneSettings,
+    volumes: &[VolumeData],
+    caster: &RayCaster,
+) -> Vec<VolumeInstance> {
+    let starts = caster.tables.as_ref().map(|tables| tables.starts.as_slice()).unwrap_or_default();
+    volumes.iter().zip(starts).map(|(volume, start)| instance(view, settings, volume, *start)).collect()
+}
+
+fn instance(
+    view: &View,
+    settings: &SceneSettings,
+    volume: &VolumeData,
+    (table_start, bricks_start): (u32, u32),
+) -> VolumeInstance {
+    let (_, loaded, classified, texture, placement, lighting, ray_cast) = volume;
+    let extent = 2.0 * loaded.half_extent().as_dvec3() / f64::from(settings.millimetres_per_unit);
+    let entity_from_texture = DAffine3::from_scale(extent) * DAffine3::from_translation(DVec3::splat(-0.5));
+    let eye_from_texture = view.eye_from_scene * placement.0 * entity_from_texture;
+    let size = DVec3::from(loaded.data.size.map(f64::from));
+    let axes = eye_from_texture.matrix3;
+    let voxel =
+        (axes.x_axis.length() / size.x).min(axes.y_axis.length() / size.y).min(axes.z_axis.length() / size.z);
+    let (low, high) = classified.domain;
+    let (lighting, [ambient, diffuse, specular, shininess]) = match lighting {
+        VolumeLighting::EmissionAbsorption => (0, [0.0; 4]),
+        VolumeLighting::Gradient { ambient, diffuse, specular, shininess } => {
+            (1, [*ambient, *diffuse, *specular, *shininess])
+        }
+    };
+    VolumeInstance {
+        texture_from_eye: glam::DMat4::from(eye_from_texture.inverse()).as_mat4(),
+        size: size.as_vec3(),
+        step: (voxel * f64::from(ray_cast.step)) as f32,
+        lookup_scale: texture.format.scale / (high - low),
+        lookup_offset: (texture.format.offset - low) / (high - low),
+        table_start,
+        table_entries: classified.table.entries.len() as u32,
+        bricks: UVec3::from(classified.bricks),
+        bricks_start,
+        least_transmittance: 1.0 - ray_cast.early_termination,
+        skip_empty: u32::from(ray_cast.skip_empty),
+        lighting,
+        ambient,
+        diffuse,
+        specular,
+        shininess,
+        sentinel: SENTINEL_THRESHOLD,
+    }
+}
+
+#[expect(clippy::too_many_arguments, reason = "what one draw reads")]
+fn draw(
+    gpu: &Gpu,
+    frame: &FrameBuffers,
+    settings: &SceneSettings,
+    volumes: &[VolumeData],
+    instances: &[VolumeInstance],
+    surface: &Surface,
+    caster: &RayCaster,
+    timing: Option<wgpu::RenderPassTimestampWrites>,
+) {
+    let (Some((_, draw)), Some(tables), Some(target), Some(sampler)) =
+        (&caster.draw, &caster.tables, &caster.target, &caster.sampler)
+    else {
+        return;
+    };
+    let instances = storage_buffer(gpu, "volume instances", instances);
+    let background;
+    let behind = match surface.colour() {
+        Some(target) => &target.view,
+        None => {
+            background = background_texture(gpu, settings);
+            &background
+        }
+    };
+    let mut resources = vec![
+        frame.frame.as_entire_binding(),
+        frame.lights.as_entire_binding(),
+        instances.as_entire_binding(),
+        tables.entries.as_entire_binding(),
+        tables.distances.as_entire_binding(),
+        wgpu::BindingResource::TextureView(behind),
+        wgpu::BindingResource::Sampler(sampler),
+    ];
+    resources.extend(volumes.iter().map(|volume| wgpu::BindingResource::TextureView(&volume.3.view)));
+    let bind_group = draw.bind(gpu, &resources);
+    let mut encoder =
+        gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("raycast") });
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("raycast"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &target.view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        timestamp_writes: timing,
+        ..Default::default()
+    });
+    draw.begin(&mut pass, &bind_group);
+    pass.draw(0..3, 0..1);
+    drop(pass);
+    gpu.queue.submit([encoder.finish()]);
+}
+
+/// One texel that says: background, infinitely far away.
+fn background_texture(gpu: &Gpu, settings: &SceneSettings) -> wgpu::TextureView {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("background"),
+        size: wgpu::Extent3d::default(),
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: FORMAT,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let texel = far_background(settings).to_array();
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16), rows_per_image: None };
+    gpu.queue.write_texture(texture.as_image_copy(), bytemuck::bytes_of(&texel), layout, texture.size());
+    texture.create_view(&Default::default())
+}

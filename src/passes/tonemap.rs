@@ -1,0 +1,114 @@
+//! Radiance becomes what a screen shows.
+//!
+//! Reads the radiance of the last pass that drew; writes [`Tonemap::encoded`], rgba8unorm. Runs when an encoded picture is asked for.
+
+use super::raycast::RayCaster;
+use super::surface::Surface;
+use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, binding, uniform_buffer};
+use crate::render::Failure;
+use crate::view::{Picture, View};
+use crate::{Stage, report::Report};
+use bevy_app::{App, Plugin, Update};
+use bevy_ecs::prelude::*;
+use encase::ShaderType;
+
+/// Encodes pictures.
+pub(crate) struct TonemapPlugin;
+
+impl Plugin for TonemapPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<Tonemap>()
+            .add_systems(Update, run.in_set(Stage::Tonemap).run_if(resource_exists::<Gpu>));
+    }
+}
+
+/// What the pass keeps between frames.
+#[derive(Resource, Default, Debug)]
+pub(crate) struct Tonemap {
+    draw: Option<Draw>,
+    /// The encoded picture.
+    pub encoded: Option<Target>,
+}
+
+/// Mirror of `Display` in `shaders/tonemap.wgsl`.
+#[derive(ShaderType, Clone, Debug)]
+pub(crate) struct DisplayUniform {
+    pub gain: f32,
+    pub exponent: f32,
+}
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+fn run(
+    (gpu, view, picture): (Res<Gpu>, Res<View>, Res<Picture>),
+    (surface, caster): (Res<Surface>, Res<RayCaster>),
+    mut tonemap: ResMut<Tonemap>,
+    mut timer: Option<ResMut<PassTimer>>,
+    (mut report, mut failure): (ResMut<Report>, ResMut<Failure>),
+) {
+    let Some(radiance) = caster.radiance().or(surface.colour()).filter(|_| picture.encoded) else { return };
+    let timing = timer.as_mut().and_then(|timer| timer.time("tonemap"));
+    failure.keep(draw(&gpu, &view, &picture, radiance, &mut tonemap, timing, &mut report));
+}
+
+fn draw(
+    gpu: &Gpu,
+    view: &View,
+    picture: &Picture,
+    radiance: &Target,
+    tonemap: &mut Tonemap,
+    timing: Option<wgpu::RenderPassTimestampWrites>,
+    report: &mut Report,
+) -> Result<(), GpuError> {
+    if tonemap.draw.is_none() {
+        tonemap.draw = Some(Draw::new(
+            gpu,
+            &DrawDescriptor {
+                name: "tonemap",
+                generated: &[],
+                entry_points: ("cover", "encode"),
+                bindings: &[binding::UNIFORM, binding::TEXTURE],
+                attributes: &[],
+                format: FORMAT,
+                depth: false,
+            },
+        )?);
+        report.pipelines.push("tonemap");
+    }
+    if tonemap.encoded.as_ref().is_none_or(|target| target.texture.size() != radiance.texture.size()) {
+        tonemap.encoded = None;
+        let target = Target::new(gpu, "tonemap", picture.size, FORMAT)?;
+        report.gpu_bytes.insert("tonemap", target.bytes());
+        tonemap.encoded = Some(target);
+    }
+    let (Some(draw), Some(target)) = (&tonemap.draw, &tonemap.encoded) else { return Ok(()) };
+    let display = uniform_buffer(
+        gpu,
+        "display",
+        &DisplayUniform { gain: view.exposure.exp2(), exponent: view.gamma.recip() },
+    );
+    let bind_group =
+        draw.bind(gpu, &[display.as_entire_binding(), wgpu::BindingResource::TextureView(&radiance.view)]);
+    let mut encoder =
+        gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("tonemap") });
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("tonemap"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &target.view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        timestamp_writes: timing,
+        ..Default::default()
+    });
+    draw.begin(&mut pass, &bind_group);
+    pass.draw(0..3, 0..1);
+    drop(pass);
+    gpu.queue.submit([encoder.finish()]);
+    report.ran("tonemap", &[("pixels", u64::from(picture.size.x) * u64::from(picture.size.y))]);
+    Ok(())
+}

@@ -1,0 +1,201 @@
+//! What was read goes to the GPU, once, and is let go of on the processor.
+
+use crate::gpu::{Gpu, VolumeFormat};
+use crate::loading::{LoadedMesh, LoadedVolume};
+use crate::scene::{Problem, Problems};
+use crate::sources::{MeshData, Samples};
+use crate::{Stage, report::Report};
+use bevy_app::{App, Plugin, Update};
+use bevy_ecs::prelude::*;
+use half::f16;
+use wgpu::util::DeviceExt;
+
+/// Uploads meshes.
+pub(crate) struct MeshUploadPlugin;
+
+impl Plugin for MeshUploadPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(Update, upload_meshes.in_set(Stage::Upload).run_if(resource_exists::<Gpu>));
+    }
+}
+
+/// Uploads volumes.
+pub(crate) struct VolumeUploadPlugin;
+
+impl Plugin for VolumeUploadPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(Update, upload_volumes.in_set(Stage::Upload).run_if(resource_exists::<Gpu>));
+    }
+}
+
+/// A mesh on the GPU: position and normal of each vertex, interleaved, six 32-bit floats.
+#[derive(Component, Debug)]
+pub(crate) struct MeshBuffers {
+    pub vertices: wgpu::Buffer,
+    pub indices: wgpu::Buffer,
+    pub index_count: u32,
+}
+
+/// A volume on the GPU.
+#[derive(Component, Debug)]
+pub(crate) struct VolumeTexture {
+    pub view: wgpu::TextureView,
+    pub format: VolumeFormat,
+    bytes: u64,
+}
+
+/// The texel that stands for a sample that is not finite. Any mix with it lies far beyond what data may hold, and stays finite.
+pub(crate) const SENTINEL: f32 = 3.0e38;
+
+/// Texels greater than this have a share of [`SENTINEL`] in them.
+pub(crate) const SENTINEL_THRESHOLD: f32 = 2.0e30;
+
+fn upload_meshes(
+    mut commands: Commands,
+    gpu: Res<Gpu>,
+    mut meshes: Query<(Entity, &mut LoadedMesh), Changed<LoadedMesh>>,
+    all: Query<&MeshBuffers>,
+    (mut problems, mut report): (ResMut<Problems>, ResMut<Report>),
+) {
+    let limit = gpu.device.limits().max_buffer_size;
+    for (entity, mut mesh) in &mut meshes {
+        let Some(data) = mesh.bypass_change_detection().data.take() else { continue };
+        let vertices: Vec<[[f32; 3]; 2]> = data
+            .positions
+            .iter()
+            .zip(&data.normals)
+            .map(|(position, normal)| [position.to_array(), normal.to_array()])
+            .collect();
+        let (vertex_bytes, index_bytes) =
+            (bytemuck::cast_slice(&vertices), bytemuck::cast_slice(&data.triangles));
+        let largest = <[u8]>::len(vertex_bytes).max(<[u8]>::len(index_bytes)) as u64;
+        if largest > limit {
+            problems.0.push(mesh_too_large(&data, largest, limit).on(entity, "Mesh"));
+            continue;
+        }
+        let buffers = MeshBuffers {
+            vertices: buffer(&gpu, "vertices", vertex_bytes, wgpu::BufferUsages::VERTEX),
+            indices: buffer(&gpu, "indices", index_bytes, wgpu::BufferUsages::INDEX),
+            index_count: 3 * data.triangles.len() as u32,
+        };
+        report.ran("upload_meshes", &[("triangles", data.triangles.len() as u64)]);
+        commands.entity(entity).insert(buffers);
+    }
+    let held: u64 = all.iter().map(|mesh| mesh.vertices.size() + mesh.indices.size()).sum();
+    if held > 0 {
+        report.gpu_bytes.insert("meshes", held);
+    }
+}
+
+fn mesh_too_large(data: &MeshData, bytes: u64, limit: u64) -> Problem {
+    let message = format!(
+        "{} triangles need a buffer of {bytes} bytes; this adapter's limit is {limit}",
+        data.triangles.len()
+    );
+    Problem::error(message).help("simplify the mesh, or split it into several entities")
+}
+
+fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+}
+
+fn upload_volumes(
+    mut commands: Commands,
+    gpu: Res<Gpu>,
+    mut volumes: Query<(Entity, &mut LoadedVolume), Changed<LoadedVolume>>,
+    all: Query<&VolumeTexture>,
+    (mut problems, mut report): (ResMut<Problems>, ResMut<Report>),
+) {
+    let limit = gpu.device.limits().max_texture_dimension_3d;
+    let mut added = 0;
+    for (entity, mut volume) in &mut volumes {
+        let volume = volume.bypass_change_detection();
+        if !std::mem::take(&mut volume.has_samples) {
+            continue;
+        }
+        let size = volume.data.size;
+        let emptied = volume.data.samples.emptied();
+        let samples = std::mem::replace(&mut volume.data.samples, emptied);
+        if size.iter().any(|side| *side > limit) {
+            let [x, y, z] = size;
+            let message =
+                format!("{x} x {y} x {z} voxels are more than this adapter takes: {limit} along each side");
+            problems.0.push(
+                Problem::error(message)
+                    .help("downsample the volume, or cut out the part that matters")
+                    .on(entity, "Volume"),
+            );
+            continue;
+        }
+        let texture = texture(&gpu, size, &samples);
+        added += texture.bytes;
+        report.ran("upload_volumes", &[("voxels", samples.len() as u64)]);
+        commands.entity(entity).insert(texture);
+    }
+    let held: u64 = all.iter().map(|volume| volume.bytes).sum::<u64>() + added;
+    if held > 0 {
+        report.gpu_bytes.insert("volumes", held);
+    }
+}
+
+fn texture(gpu: &Gpu, size: [u32; 3], samples: &Samples) -> VolumeTexture {
+    let format = VolumeFormat::choose(gpu, samples.format());
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("volume"),
+        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: size[2] },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D3,
+        format: format.texture,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let slice = size[0] as usize * size[1] as usize;
+    let texel = format.texture.block_copy_size(None).unwrap_or(4);
+    // Some slices at a time, so that the converted copy stays small.
+    let slices = ((4 << 20) / (slice * texel as usize)).clamp(1, size[2] as usize);
+    for first in (0..size[2] as usize).step_by(slices) {
+        let count = slices.min(size[2] as usize - first);
+        let texels = convert(samples, first * slice..(first + count) * slice, format);
+        gpu.queue.write_texture(
+            wgpu::TexelCopyTextureInfo {
+                origin: wgpu::Origin3d { x: 0, y: 0, z: first as u32 },
+                ..texture.as_image_copy()
+            },
+            &texels,
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(size[0] * texel),
+                rows_per_image: Some(size[1]),
+            },
+            wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: count as u32 },
+        );
+    }
+    let bytes = slice as u64 * u64::from(size[2]) * u64::from(texel);
+    VolumeTexture { view: texture.create_view(&Default::default()), format, bytes }
+}
+
+/// Samples as texels of a format: see [`VolumeFormat::choose`] for which goes with which.
+fn convert(samples: &Samples, range: std::ops::Range<usize>, format: VolumeFormat) -> Vec<u8> {
+    use wgpu::TextureFormat as Format;
+    fn bytes<T: bytemuck::Pod>(texels: impl Iterator<Item = T>) -> Vec<u8> {
+        bytemuck::cast_slice(&texels.collect::<Vec<T>>()).to_vec()
+    }
+    match (samples, format.texture) {
+        (Samples::U8(s), Format::R8Unorm) => s[range].to_vec(),
+        (Samples::I8(s), Format::R8Unorm) => bytes(s[range].iter().map(|s| (i16::from(*s) + 128) as u8)),
+        (Samples::U8(s), Format::R16Float) => {
+            let halves: Vec<f16> = (0..=255u8).map(|value| f16::from_f32(f32::from(value))).collect();
+            bytes(s[range].iter().map(|s| halves[usize::from(*s)]))
+        }
+        (Samples::I8(s), Format::R16Float) => bytes(s[range].iter().map(|s| f16::from_f32(f32::from(*s)))),
+        (Samples::U16(s), Format::R16Unorm) => bytes(s[range].iter().copied()),
+        (Samples::I16(s), Format::R16Unorm) => bytes(s[range].iter().map(|s| (i32::from(*s) + 32768) as u16)),
+        (Samples::F32(s), _) => bytes(
+            s[range]
+                .iter()
+                .map(|s| if s.abs() <= crate::sources::volume::MAX_SAMPLE_MAGNITUDE { *s } else { SENTINEL }),
+        ),
+        (other, _) => bytes(range.map(|index| other.get(index).unwrap_or(SENTINEL))),
+    }
+}

@@ -1,0 +1,159 @@
+//! A loaded scene becomes a picture in memory.
+
+use crate::gpu::{Gpu, GpuError, PassTimer, read_texture};
+use crate::passes::{raycast::RayCaster, surface::Surface, tonemap::Tonemap};
+use crate::report::Report;
+use crate::scene::{self, Override, Problem, Problems, SceneDocument, SceneEntities};
+use crate::view::Picture;
+use bevy_app::App;
+use bevy_ecs::prelude::*;
+use bevy_ecs::reflect::AppTypeRegistry;
+use std::path::Path;
+use std::time::Instant;
+
+/// The first failure of a pass in this frame.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct Failure(Option<GpuError>);
+
+impl Failure {
+    /// Keeps an error, unless an earlier one is there: what follows is often only its consequence.
+    pub fn keep(&mut self, result: Result<(), GpuError>) {
+        if let (None, Err(error)) = (&self.0, result) {
+            self.0 = Some(error);
+        }
+    }
+}
+
+/// A picture in memory, row by row from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Red, green and blue of each pixel.
+    pub pixels: Pixels,
+}
+
+/// The pixels of an [`Image`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Pixels {
+    /// Scene-referred linear radiance.
+    Radiance(Vec<[f32; 3]>),
+    /// Exposed and gamma-encoded.
+    Encoded(Vec<[u8; 3]>),
+}
+
+/// Why there is no picture.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// The scene has errors, which are in [`Problems`].
+    #[error("the scene has errors")]
+    Scene,
+    /// The GPU failed.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+}
+
+/// Reads the scene at `path` into the world, or reports in [`Problems`] why it cannot; then what was there before stays.
+pub fn load_scene(app: &mut App, path: &Path, overrides: &[Override]) -> SceneDocument {
+    let started = Instant::now();
+    let registry = app.world().resource::<AppTypeRegistry>().clone();
+    let document = SceneDocument::load(path, &registry.read(), overrides);
+    app.world_mut().insert_resource(Problems(document.problems.clone()));
+    if !document.has_errors() {
+        scene::reconcile(app.world_mut(), &document);
+    }
+    app.world_mut().resource_mut::<Report>().spent("read scene", started);
+    document
+}
+
+/// The problems of the scene so far, those found after reading with the places that the document knows for them.
+pub fn problems(world: &World, document: &SceneDocument) -> Vec<Problem> {
+    let names = world.resource::<SceneEntities>();
+    let placed = |problem: &Problem| {
+        let Some((entity, path)) = &problem.subject else { return problem.clone() };
+        let name = names.0.iter().find(|(_, known)| *known == entity).map(|(name, _)| name);
+        let place = name.and_then(|name| document.entity(name)).map(|entity| entity.place_of(path));
+        let who = name.map_or(String::new(), |name| format!("`{name}`: "));
+        Problem { message: format!("{who}{}", problem.message), place, ..problem.clone() }
+    };
+    world.resource::<Problems>().0.iter().map(placed).collect()
+}
+
+/// Draws the world as it is now and brings the picture back.
+///
+/// # Errors
+///
+/// If the scene has errors, or the GPU fails. Needs a [`Gpu`] resource.
+pub fn render(app: &mut App) -> Result<Image, RenderError> {
+    app.init_resource::<Failure>();
+    if app.world().resource::<Report>().measure && !app.world().contains_resource::<PassTimer>() {
+        let timer = PassTimer::new(app.world().resource::<Gpu>());
+        timer.map(|timer| app.insert_resource(timer));
+    }
+    let started = Instant::now();
+    app.update();
+    let world = app.world_mut();
+    world.resource_mut::<Report>().spent("update", started);
+    if let Some(error) = world.resource_mut::<Failure>().0.take() {
+        return Err(error.into());
+    }
+    if world.resource::<Problems>().has_errors() {
+        return Err(RenderError::Scene);
+    }
+    let started = Instant::now();
+    world.resource::<Gpu>().wait("drawing")?;
+    world.resource_mut::<Report>().spent("draw", started);
+    let started = Instant::now();
+    let image = read_image(world)?;
+    world.resource_mut::<Report>().spent("read back", started);
+    measure(world)?;
+    Ok(image)
+}
+
+fn read_image(world: &World) -> Result<Image, GpuError> {
+    let gpu = world.resource::<Gpu>();
+    let picture = world.resource::<Picture>();
+    let (width, height) = (picture.size.x, picture.size.y);
+    let pixels = match &world.resource::<Tonemap>().encoded {
+        Some(target) if picture.encoded => {
+            let bytes = read_texture(gpu, &target.texture)?;
+            Pixels::Encoded(bytes.chunks_exact(4).map(|texel| [texel[0], texel[1], texel[2]]).collect())
+        }
+        _ => Pixels::Radiance(read_radiance(world)?.into_iter().map(|[r, g, b, _]| [r, g, b]).collect()),
+    };
+    Ok(Image { width, height, pixels })
+}
+
+/// The texels of the last pass that drew radiance.
+fn read_radiance(world: &World) -> Result<Vec<[f32; 4]>, GpuError> {
+    let target = world.resource::<RayCaster>().radiance().or(world.resource::<Surface>().colour());
+    let Some(target) = target else { return Ok(Vec::new()) };
+    let bytes = read_texture(world.resource::<Gpu>(), &target.texture)?;
+    Ok(bytes.chunks_exact(16).map(bytemuck::pod_read_unaligned).collect())
+}
+
+/// Adds what costs time to find out: GPU times and the samples that rays took.
+fn measure(world: &mut World) -> Result<(), GpuError> {
+    if !world.resource::<Report>().measure {
+        return Ok(());
+    }
+    let samples = match world.resource::<RayCaster>().radiance() {
+        Some(_) => read_radiance(world)?.iter().map(|texel| f64::from(texel[3])).sum::<f64>() as u64,
+        None => 0,
+    };
+    let times = world.resource_scope(|world, gpu: Mut<Gpu>| match world.get_resource_mut::<PassTimer>() {
+        Some(mut timer) => timer.collect(&gpu),
+        None => Ok(Vec::new()),
+    })?;
+    let mut report = world.resource_mut::<Report>();
+    for (pass, milliseconds) in times {
+        report.took(pass, milliseconds);
+    }
+    if let Some(record) = report.passes.get_mut("raycast") {
+        *record.work.entry("samples").or_default() += samples;
+    }
+    Ok(())
+}

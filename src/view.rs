@@ -1,0 +1,230 @@
+//! The camera and the lights of a frame, as shaders want them.
+
+use crate::Stage;
+use crate::components::{DirectionalLight, Motion, Placement, Projection, SceneSettings, ViewCamera};
+use crate::gpu::{Gpu, storage_buffer, uniform_buffer};
+use crate::loading::{LoadedMesh, LoadedVolume, placed_corners};
+use bevy_app::{App, Plugin, Update};
+use bevy_ecs::prelude::*;
+use encase::ShaderType;
+use glam::dcamera::rh::view::look_at_affine3;
+use glam::{DAffine3, DMat4, DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
+
+/// Derives the [`View`] and what shaders read of it.
+pub(crate) struct ViewPlugin;
+
+impl Plugin for ViewPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<Picture>().init_resource::<View>().add_systems(
+            Update,
+            (look, upload_frame.run_if(resource_exists::<Gpu>)).chain().in_set(Stage::View),
+        );
+    }
+}
+
+/// The picture that is asked for.
+#[derive(Resource, Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Pixels across and down.
+    pub size: UVec2,
+    /// The camera to take it with; the first by name where none is said.
+    pub camera: Option<String>,
+    /// Whether it is to be encoded for a screen, besides its radiance.
+    pub encoded: bool,
+}
+
+impl Default for Picture {
+    fn default() -> Self {
+        Self { size: UVec2::new(960, 540), camera: None, encoded: true }
+    }
+}
+
+/// Where the picture is taken from, derived from a [`ViewCamera`] or, without one, from what there is to see.
+#[derive(Resource, Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Takes the scene to eye space: the camera at the origin, looking along -z, y up.
+    pub eye_from_scene: DAffine3,
+    /// Projection.
+    pub projection: Projection,
+    /// Exposure value.
+    pub exposure: f32,
+    /// Encoding exponent.
+    pub gamma: f32,
+    /// How far the camera is from what it looks at, scene units: the scale of what matters.
+    pub reach: f64,
+    /// How far away the farthest corner of anything is, scene units.
+    pub far: f64,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self::of(&ViewCamera::default(), DAffine3::IDENTITY)
+    }
+}
+
+impl View {
+    fn of(camera: &ViewCamera, placement: DAffine3) -> Self {
+        let eye = placement.transform_point3(camera.eye.as_dvec3());
+        let target = placement.transform_point3(camera.target.as_dvec3());
+        let up = placement.transform_vector3(camera.up.as_dvec3());
+        let reach = eye.distance(target);
+        Self {
+            eye_from_scene: look_at_affine3(eye, target, up.normalize()),
+            projection: camera.projection,
+            exposure: camera.exposure,
+            gamma: camera.gamma,
+            reach,
+            far: reach,
+        }
+    }
+
+    /// Half of the picture across and up: tangents in perspective, scene units in an orthographic view.
+    fn half_extent(&self, size: UVec2) -> Vec2 {
+        let half_height = match self.projection {
+            Projection::Perspective { vertical_fov } => (f64::from(vertical_fov).to_radians() / 2.0).tan(),
+            Projection::Orthographic { height } => f64::from(height) / 2.0,
+        };
+        let aspect = f64::from(size.x) / f64::from(size.y);
+        Vec2::new((half_height * aspect) as f32, half_height as f32)
+    }
+
+    /// Reversed depth: 1 at the near plane, 0 far away. In perspective far is infinite.
+    fn clip_from_eye(&self, half_extent: Vec2) -> Mat4 {
+        let (x, y) = (f64::from(half_extent.x).recip(), f64::from(half_extent.y).recip());
+        let columns = match self.projection {
+            Projection::Perspective { .. } => {
+                let near = self.reach * 1e-5;
+                [[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, near, 0.0]]
+            }
+            Projection::Orthographic { .. } => {
+                let far = self.far * 1.01;
+                [[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, 1.0 / far, 0.0], [0.0, 0.0, 1.0, 1.0]]
+            }
+        };
+        DMat4::from_cols_array_2d(&columns).as_mat4()
+    }
+}
+
+/// Mirror of `Frame` in `shaders/shared/frame.wgsl`.
+#[derive(ShaderType, Clone, Debug)]
+pub(crate) struct FrameUniform {
+    pub clip_from_eye: Mat4,
+    pub half_extent: Vec2,
+    pub picture: Vec2,
+    pub background: Vec3,
+    pub perspective: u32,
+    pub light_count: u32,
+}
+
+/// Mirror of `Light` in `shaders/shared/frame.wgsl`.
+#[derive(ShaderType, Clone, Debug)]
+pub(crate) struct LightUniform {
+    pub to_light: Vec3,
+    pub irradiance: Vec3,
+}
+
+/// The frame's camera and lights on the GPU.
+#[derive(Resource, Debug)]
+pub(crate) struct FrameBuffers {
+    pub frame: wgpu::Buffer,
+    pub lights: wgpu::Buffer,
+}
+
+type Boxes<'w, 's> = (
+    Query<'w, 's, (&'static Placement, &'static LoadedMesh)>,
+    Query<'w, 's, (&'static Placement, &'static LoadedVolume)>,
+);
+
+fn look(
+    cameras: Query<(&Name, &ViewCamera, &Placement)>,
+    boxes: Boxes,
+    settings: Res<SceneSettings>,
+    picture: Res<Picture>,
+    mut view: ResMut<View>,
+) {
+    let corners = scene_corners(&boxes, &settings);
+    let wanted = |name: &Name| picture.camera.as_deref().is_none_or(|camera| camera == name.as_str());
+    let found =
+        cameras.iter().filter(|(name, ..)| wanted(name)).min_by_key(|(name, ..)| name.as_str().to_owned());
+    let mut new = match found {
+        Some((_, camera, placement)) => View::of(camera, placement.0),
+        None => View::of(&camera_on_all(&corners, picture.size), DAffine3::IDENTITY),
+    };
+    let depths = corners.iter().map(|corner| -new.eye_from_scene.transform_point3(*corner).z);
+    new.far = depths.fold(new.reach, f64::max);
+    view.set_if_neq(new);
+}
+
+/// The corners of everything that can be seen.
+fn scene_corners((meshes, volumes): &Boxes, settings: &SceneSettings) -> Vec<DVec3> {
+    let meshes = meshes.iter().flat_map(|(placement, mesh)| placed_corners(placement, mesh.bounds));
+    let volumes = volumes.iter().flat_map(|(placement, volume)| {
+        let half = volume.half_extent() / settings.millimetres_per_unit;
+        placed_corners(placement, (-half, half))
+    });
+    meshes.chain(volumes).collect()
+}
+
+/// A camera in front of everything, a little above it, with all of it in the picture.
+fn camera_on_all(corners: &[DVec3], size: UVec2) -> ViewCamera {
+    let first = corners.first().copied().unwrap_or_default();
+    let (low, high) =
+        corners.iter().fold((first, first), |(low, high), corner| (low.min(*corner), high.max(*corner)));
+    let centre = (low + high) / 2.0;
+    let radius = (high - low).length() / 2.0;
+    let radius = if radius > 0.0 { radius } else { 1.0 };
+    let Projection::Perspective { vertical_fov } = Projection::default() else {
+        return ViewCamera::default();
+    };
+    let half_vertical = f64::from(vertical_fov).to_radians() / 2.0;
+    let aspect = f64::from(size.x) / f64::from(size.y);
+    let half = half_vertical.min((half_vertical.tan() * aspect).atan());
+    let eye = centre + DVec3::new(0.35, 0.3, 1.0).normalize() * (radius / half.sin());
+    ViewCamera { eye: eye.as_vec3(), target: centre.as_vec3(), ..Default::default() }
+}
+
+fn upload_frame(
+    mut commands: Commands,
+    gpu: Res<Gpu>,
+    view: Res<View>,
+    picture: Res<Picture>,
+    settings: Res<SceneSettings>,
+    lights: Query<(&DirectionalLight, Option<&Motion>)>,
+) {
+    let half_extent = view.half_extent(picture.size);
+    let lights: Vec<LightUniform> =
+        lights.iter().map(|(light, motion)| light_uniform(&view, light, motion)).collect();
+    let frame = FrameUniform {
+        clip_from_eye: view.clip_from_eye(half_extent),
+        half_extent,
+        picture: picture.size.as_vec2(),
+        background: settings.background,
+        perspective: u32::from(matches!(view.projection, Projection::Perspective { .. })),
+        light_count: lights.len() as u32,
+    };
+    commands.insert_resource(FrameBuffers {
+        frame: uniform_buffer(&gpu, "frame", &frame),
+        lights: storage_buffer(&gpu, "lights", &lights),
+    });
+}
+
+fn light_uniform(view: &View, light: &DirectionalLight, motion: Option<&Motion>) -> LightUniform {
+    let moved =
+        motion.map_or(DAffine3::IDENTITY, |motion| motion.0).transform_vector3(light.direction.as_dvec3());
+    let to_light = -view.eye_from_scene.transform_vector3(moved).normalize();
+    LightUniform { to_light: to_light.as_vec3(), irradiance: light.irradiance }
+}
+
+/// A mesh or volume in eye space, and the matrix for its normals.
+pub(crate) fn to_eye(view: &View, scene_from_entity: DAffine3) -> (DAffine3, DMat4) {
+    let eye_from_entity = view.eye_from_scene * scene_from_entity;
+    let normals = eye_from_entity.matrix3.inverse().transpose();
+    // Of unit size, so that large and small scales alike stay within 32 bits.
+    let largest = normals.to_cols_array().into_iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));
+    (eye_from_entity, DMat4::from_mat3(normals * if largest > 0.0 { largest.recip() } else { 1.0 }))
+}
+
+/// The picture's background as a texel of the surface target: at the end of every ray.
+pub(crate) fn far_background(settings: &SceneSettings) -> Vec4 {
+    settings.background.extend(3.0e38)
+}
