@@ -5,10 +5,12 @@
 // error is of second order in the step.
 //
 // reads  volume textures, lookup tables (colour, sigma_t per scene unit), brick distances, surface
+//        (all as textures and uniforms: software adapters read storage buffers one lane at a time)
 // writes rgba32float: radiance, number of samples taken
 
 #import frame
 #import fullscreen
+#import lights
 #import volumes
 
 struct VolumeInstance {
@@ -20,12 +22,12 @@ struct VolumeInstance {
     // Place in the lookup table = texel * scale + offset.
     lookup_scale: f32,
     lookup_offset: f32,
-    // The table: first entry and number of entries.
-    table_start: u32,
+    // Entries of the table; its row is the volume's index.
     table_entries: u32,
-    // Bricks along each axis, and the first of them.
-    bricks: vec3u,
+    // The first of the volume's bricks.
     bricks_start: u32,
+    // Bricks along each axis.
+    bricks: vec3u,
     // The ray ends when less than this is left of what lies behind.
     least_transmittance: f32,
     skip_empty: u32,
@@ -41,94 +43,88 @@ struct VolumeInstance {
 
 // Where a ray is within one volume.
 struct March {
-    // The ray in the volume's texture space.
-    origin: vec3f,
-    direction: vec3f,
     // The stretch inside the volume, scene units.
     enter: f32,
     leave: f32,
-    // Segments done.
+    // Segments done, and all there are.
     done: f32,
     count: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
-@group(0) @binding(1) var<storage, read> lights: array<Light>;
-@group(0) @binding(2) var<storage, read> volumes: array<VolumeInstance>;
-@group(0) @binding(3) var<storage, read> table: array<vec4f>;
-// Four to a word: distance to the nearest brick that holds something, in bricks; 0 is such a brick.
-@group(0) @binding(4) var<storage, read> brick_distances: array<u32>;
+@group(0) @binding(1) var<uniform> lights: array<Light, LIGHT_CAPACITY>;
+@group(0) @binding(2) var<uniform> volumes: array<VolumeInstance, VOLUMES>;
+// One row a volume: colour and extinction.
+@group(0) @binding(3) var tables: texture_2d<f32>;
+// Rows of BRICK_ROW bricks: distance to the nearest brick that holds something, in bricks; 0 is such a brick.
+@group(0) @binding(4) var brick_distances: texture_2d<u32>;
 @group(0) @binding(5) var surface: texture_2d<f32>;
 @group(0) @binding(6) var linear_sampler: sampler;
 
-const BRICK = 8.0;
+// Samples between two looks at the bricks: lanes that march together stay together.
+const RUN = 4u;
 
-fn start_march(volume: VolumeInstance, ray: Ray, surface_distance: f32) -> March {
-    let origin = (volume.texture_from_eye * vec4f(ray.origin, 1.0)).xyz;
-    let direction = (volume.texture_from_eye * vec4f(ray.direction, 0.0)).xyz;
-    // A direction along a face would divide by zero.
-    let safe = select(direction, vec3f(1e-30), abs(direction) < vec3f(1e-30));
+fn start_march(index: u32, ray: Ray, surface_distance: f32) -> March {
+    let origin = (volumes[index].texture_from_eye * vec4f(ray.origin, 1.0)).xyz;
+    let safe = away_from_zero((volumes[index].texture_from_eye * vec4f(ray.direction, 0.0)).xyz);
     let a = -origin / safe;
     let b = (1.0 - origin) / safe;
     let near = min(a, b);
     let far = max(a, b);
     let enter = max(max(near.x, near.y), max(near.z, 0.0));
     let leave = min(min(far.x, far.y), min(far.z, surface_distance));
-    let count = select(0.0, ceil((leave - enter) / volume.step - 1e-3), leave > enter);
-    return March(origin, direction, enter, leave, 0.0, count);
+    let count = select(0.0, ceil((leave - enter) / volumes[index].step - 1e-3), leave > enter);
+    return March(enter, leave, 0.0, count);
 }
 
-// How many segments from the one at `place` lie in bricks that hold nothing.
-fn empty_segments(volume: VolumeInstance, march: March, place: vec3f) -> f32 {
-    let at = clamp(place * volume.size / BRICK, vec3f(0.0), vec3f(volume.bricks) - 0.5);
-    let brick = vec3u(at);
-    let index = volume.bricks_start + (brick.z * volume.bricks.y + brick.y) * volume.bricks.x + brick.x;
-    let reach = f32((brick_distances[index >> 2u] >> ((index & 3u) * 8u)) & 255u);
-    if reach == 0.0 {
-        return 0.0;
-    }
-    let pace = march.direction * volume.size / BRICK * volume.step;
-    let wall = select(vec3f(brick) - (reach - 1.0), vec3f(brick) + reach, pace > vec3f(0.0));
-    let safe = select(pace, vec3f(1e-30), abs(pace) < vec3f(1e-30));
-    let until = (wall - at) / safe;
-    return max(1.0, ceil(min(until.x, min(until.y, until.z)) - 1e-3));
+// A direction along a face would divide by zero.
+fn away_from_zero(v: vec3f) -> vec3f {
+    return select(v, vec3f(1e-30), abs(v) < vec3f(1e-30));
 }
 
-fn look_up(volume: VolumeInstance, texel: f32) -> vec4f {
-    let last = f32(volume.table_entries - 1u);
-    let place = clamp(texel * volume.lookup_scale + volume.lookup_offset, 0.0, 1.0) * last;
+fn brick_distance(index: u32, at: vec3u) -> f32 {
+    let bricks = volumes[index].bricks;
+    let brick = volumes[index].bricks_start + (at.z * bricks.y + at.y) * bricks.x + at.x;
+    return f32(textureLoad(brick_distances, vec2u(brick % BRICK_ROW, brick / BRICK_ROW), 0).r);
+}
+
+fn look_up(index: u32, texel: f32) -> vec4f {
+    let last = f32(volumes[index].table_entries - 1u);
+    let place = clamp(texel * volumes[index].lookup_scale + volumes[index].lookup_offset, 0.0, 1.0) * last;
     let below = min(floor(place), last - 1.0);
-    let index = volume.table_start + u32(below);
-    return mix(table[index], table[index + 1u], place - below);
+    let entry = vec2u(u32(below), index);
+    return mix(textureLoad(tables, entry, 0), textureLoad(tables, entry + vec2u(1u, 0u), 0), place - below);
 }
 
 // Blinn-Phong with the gradient of the field for a normal.
-fn shade(volume: VolumeInstance, index: u32, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
-    let voxel = 1.0 / volume.size;
+fn shade(index: u32, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
+    let voxel = 1.0 / volumes[index].size;
     let x = vec3f(voxel.x, 0.0, 0.0);
     let y = vec3f(0.0, voxel.y, 0.0);
     let z = vec3f(0.0, 0.0, voxel.z);
     var ahead = vec3f(texel_at(index, place + x), texel_at(index, place + y), texel_at(index, place + z));
     var behind = vec3f(texel_at(index, place - x), texel_at(index, place - y), texel_at(index, place - z));
-    ahead = select(ahead, vec3f(centre), ahead > vec3f(volume.sentinel));
-    behind = select(behind, vec3f(centre), behind > vec3f(volume.sentinel));
+    let sentinel = vec3f(volumes[index].sentinel);
+    ahead = select(ahead, vec3f(centre), ahead > sentinel);
+    behind = select(behind, vec3f(centre), behind > sentinel);
     // The gradient is a covector: it goes through the transpose.
-    let gradient = (vec4f((ahead - behind) * volume.size, 0.0) * volume.texture_from_eye).xyz;
+    let gradient = (vec4f((ahead - behind) * volumes[index].size, 0.0) * volumes[index].texture_from_eye).xyz;
     let steepest = max(abs(gradient.x), max(abs(gradient.y), abs(gradient.z)));
-    let flat = steepest * volume.lookup_scale * volume.step < 1e-6;
+    let flat = steepest * volumes[index].lookup_scale * volumes[index].step < 1e-6;
     let along = normalize(gradient / max(steepest, 1e-30));
     let normal = select(along, -along, dot(along, ray.direction) > 0.0);
     var diffuse = vec3f(0.0);
     var specular = vec3f(0.0);
     for (var i = 0u; i < frame.light_count; i += 1u) {
-        let light = lights[i];
-        let half_way = normalize(light.to_light - ray.direction);
-        let cosine = max(dot(normal, light.to_light), 0.0);
-        let highlight = pow(max(dot(normal, half_way), 0.0), volume.shininess);
-        diffuse += light.irradiance / PI * select(cosine, 1.0, flat);
-        specular += light.irradiance / PI * select(highlight, 0.0, flat || cosine == 0.0);
+        let to_light = lights[i].to_light;
+        let irradiance = lights[i].irradiance / PI;
+        let half_way = normalize(to_light - ray.direction);
+        let cosine = max(dot(normal, to_light), 0.0);
+        let highlight = pow(max(dot(normal, half_way), 1e-6), volumes[index].shininess);
+        diffuse += irradiance * select(cosine, 1.0, flat);
+        specular += irradiance * select(highlight, 0.0, flat || cosine == 0.0);
     }
-    return colour * (volume.ambient + volume.diffuse * diffuse) + volume.specular * specular;
+    return colour * (volumes[index].ambient + volumes[index].diffuse * diffuse) + volumes[index].specular * specular;
 }
 
 @fragment
@@ -137,51 +133,88 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let behind = textureLoad(surface, min(vec2u(position.xy), textureDimensions(surface) - 1u), 0);
     var marches: array<March, VOLUMES>;
     for (var i = 0u; i < VOLUMES; i += 1u) {
-        marches[i] = start_march(volumes[i], ray, behind.a);
+        marches[i] = start_march(i, ray, behind.a);
     }
     var radiance = vec3f(0.0);
     var transmittance = 1.0;
     var samples = 0.0;
     loop {
-        // The volume whose next segment is the nearest.
+        // The volume whose next segment is the nearest, and where the next of the others begins.
         var index = 0u;
-        var distance = FAR;
+        var nearest = FAR;
+        var until = FAR;
         for (var i = 0u; i < VOLUMES; i += 1u) {
             let start = marches[i].enter + marches[i].done * volumes[i].step;
-            if marches[i].done < marches[i].count && start < distance {
-                index = i;
-                distance = start;
+            if marches[i].done < marches[i].count {
+                until = min(until, max(start, nearest));
+                index = select(index, i, start < nearest);
+                nearest = min(nearest, start);
             }
         }
-        if distance == FAR {
+        if nearest == FAR {
             break;
         }
-        let volume = volumes[index];
-        let progress = marches[index];
-        let length = min(volume.step, progress.leave - distance);
-        let place = progress.origin + progress.direction * (distance + 0.5 * length);
-        if volume.skip_empty == 1u {
-            let empty = empty_segments(volume, progress, place);
-            if empty > 0.0 {
-                marches[index].done += empty;
-                continue;
+        let enter = marches[index].enter;
+        let leave = marches[index].leave;
+        let count = marches[index].count;
+        let step = volumes[index].step;
+        let least = volumes[index].least_transmittance;
+        let lit = volumes[index].lighting == 1u;
+        let direction = (volumes[index].texture_from_eye * vec4f(ray.direction, 0.0)).xyz;
+        let start = (volumes[index].texture_from_eye * vec4f(ray.origin, 1.0)).xyz + direction * enter;
+        // The same in bricks.
+        let bricks = volumes[index].size / BRICK;
+        let pace = away_from_zero(direction * bricks * step);
+        let top = vec3f(volumes[index].bricks) - 0.5;
+        let skip = volumes[index].skip_empty == 1u;
+        var done = marches[index].done;
+        loop {
+            // Leap to the next brick that holds something.
+            loop {
+                if !skip || done >= count {
+                    break;
+                }
+                let at = clamp(start * bricks + pace * (done + 0.5), vec3f(0.0), top);
+                let brick = floor(at);
+                let reach = brick_distance(index, vec3u(brick));
+                if reach == 0.0 {
+                    break;
+                }
+                let wall = select(brick - (reach - 1.0), brick + reach, pace > vec3f(0.0));
+                let walls = (wall - at) / pace;
+                done += max(1.0, ceil(min(walls.x, min(walls.y, walls.z)) - 1e-3));
+                if enter + done * step > until {
+                    break;
+                }
+            }
+            let end = min(done + f32(RUN), count);
+            loop {
+                if done >= end || enter + done * step > until {
+                    break;
+                }
+                let length = min(step, leave - enter - done * step);
+                let place = start + direction * (done * step + 0.5 * length);
+                let texel = texel_at(index, place);
+                let entry = look_up(index, texel);
+                done += 1.0;
+                samples += 1.0;
+                let alpha = select(1.0 - exp(-entry.a * length), 0.0, texel > volumes[index].sentinel);
+                var colour = entry.rgb;
+                if lit && alpha > 0.0 {
+                    colour = shade(index, colour, place, texel, ray);
+                }
+                radiance += transmittance * alpha * colour;
+                transmittance *= 1.0 - alpha;
+                if transmittance <= least {
+                    break;
+                }
+            }
+            if done >= count || transmittance <= least || enter + done * step > until {
+                break;
             }
         }
-        marches[index].done += 1.0;
-        samples += 1.0;
-        let texel = texel_at(index, place);
-        let entry = look_up(volume, texel);
-        if entry.a <= 0.0 || texel > volume.sentinel {
-            continue;
-        }
-        let alpha = 1.0 - exp(-entry.a * length);
-        var colour = entry.rgb;
-        if volume.lighting == 1u {
-            colour = shade(volume, index, colour, place, texel, ray);
-        }
-        radiance += transmittance * alpha * colour;
-        transmittance *= 1.0 - alpha;
-        if transmittance <= volume.least_transmittance {
+        marches[index].done = done;
+        if transmittance <= least {
             transmittance = 0.0;
             break;
         }

@@ -2,10 +2,11 @@
 //
 //   L = ambient + sum over lights of (diffuse/pi + specular (s+8)/(8 pi) (n.h)^s) E max(n.l, 0)
 //
-// reads  vertices (position, normal), meshes, lights
+// reads  vertices (position, normal), the mesh, lights
 // writes rgba32float: radiance, distance along the ray (FAR where there is no surface)
 
 #import frame
+#import lights
 
 struct MeshInstance {
     eye_from_mesh: mat4x4f,
@@ -18,21 +19,21 @@ struct MeshInstance {
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
-@group(0) @binding(1) var<storage, read> lights: array<Light>;
-@group(0) @binding(2) var<storage, read> meshes: array<MeshInstance>;
+@group(0) @binding(1) var<uniform> lights: array<Light, LIGHT_CAPACITY>;
+// The mesh being drawn.
+@group(0) @binding(2) var<uniform> mesh: MeshInstance;
 
 struct Varyings {
     @builtin(position) position_in_clip: vec4f,
     @location(0) position_in_eye: vec3f,
     @location(1) normal_in_eye: vec3f,
-    @location(2) @interpolate(flat) mesh: u32,
 }
 
 @vertex
-fn transform(@builtin(instance_index) mesh: u32, @location(0) position: vec3f, @location(1) normal: vec3f) -> Varyings {
-    let position_in_eye = (meshes[mesh].eye_from_mesh * vec4f(position, 1.0)).xyz;
-    let normal_in_eye = (meshes[mesh].eye_from_mesh_normal * vec4f(normal, 0.0)).xyz;
-    return Varyings(frame.clip_from_eye * vec4f(position_in_eye, 1.0), position_in_eye, normal_in_eye, mesh);
+fn transform(@location(0) position: vec3f, @location(1) normal: vec3f) -> Varyings {
+    let position_in_eye = (mesh.eye_from_mesh * vec4f(position, 1.0)).xyz;
+    let normal_in_eye = (mesh.eye_from_mesh_normal * vec4f(normal, 0.0)).xyz;
+    return Varyings(frame.clip_from_eye * vec4f(position_in_eye, 1.0), position_in_eye, normal_in_eye);
 }
 
 @fragment
@@ -41,7 +42,6 @@ fn shade(in: Varyings) -> @location(0) vec4f {
     let distance = select(-in.position_in_eye.z, length(in.position_in_eye), frame.perspective == 1u);
     let facing = normalize(in.normal_in_eye);
     let normal = select(-facing, facing, dot(facing, to_eye) >= 0.0);
-    let mesh = meshes[in.mesh];
     var radiance = mesh.ambient;
     for (var i = 0u; i < frame.light_count; i += 1u) {
         let light = lights[i];

@@ -2,8 +2,9 @@
 
 use crate::Stage;
 use crate::components::{DirectionalLight, Motion, Placement, Projection, SceneSettings, ViewCamera};
-use crate::gpu::{Gpu, storage_buffer, uniform_buffer};
+use crate::gpu::{Gpu, uniform_array, uniform_buffer};
 use crate::loading::{LoadedMesh, LoadedVolume, placed_corners};
+use crate::scene::{Problem, Problems};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
 use encase::ShaderType;
@@ -128,6 +129,16 @@ pub(crate) struct LightUniform {
 pub(crate) struct FrameBuffers {
     pub frame: wgpu::Buffer,
     pub lights: wgpu::Buffer,
+    /// How many lights fit; shaders are made for it.
+    pub light_capacity: usize,
+}
+
+/// The most lights in a scene: as many as fit in a uniform buffer everywhere.
+const MAX_LIGHTS: usize = 1024;
+
+/// The WGSL module `lights`.
+pub(crate) fn lights_module(capacity: usize) -> (&'static str, String) {
+    ("lights", format!("const LIGHT_CAPACITY = {capacity}u;\n"))
 }
 
 type Boxes<'w, 's> = (
@@ -189,22 +200,32 @@ fn upload_frame(
     view: Res<View>,
     picture: Res<Picture>,
     settings: Res<SceneSettings>,
-    lights: Query<(&DirectionalLight, Option<&Motion>)>,
+    lights: Query<(Entity, &DirectionalLight, Option<&Motion>)>,
+    mut problems: ResMut<Problems>,
 ) {
     let half_extent = view.half_extent(picture.size);
-    let lights: Vec<LightUniform> =
-        lights.iter().map(|(light, motion)| light_uniform(&view, light, motion)).collect();
+    let light_uniforms: Vec<LightUniform> = lights
+        .iter()
+        .take(MAX_LIGHTS)
+        .map(|(_, light, motion)| light_uniform(&view, light, motion))
+        .collect();
+    if let Some((entity, ..)) = lights.iter().nth(MAX_LIGHTS) {
+        let message = format!("a scene has at most {MAX_LIGHTS} lights, found {}", lights.iter().count());
+        problems.0.push(Problem::error(message).on(entity, "DirectionalLight"));
+    }
+    let light_capacity = light_uniforms.len().next_power_of_two().max(4);
     let frame = FrameUniform {
         clip_from_eye: view.clip_from_eye(half_extent),
         half_extent,
         picture: picture.size.as_vec2(),
         background: settings.background,
         perspective: u32::from(matches!(view.projection, Projection::Perspective { .. })),
-        light_count: lights.len() as u32,
+        light_count: light_uniforms.len() as u32,
     };
     commands.insert_resource(FrameBuffers {
         frame: uniform_buffer(&gpu, "frame", &frame),
-        lights: storage_buffer(&gpu, "lights", &lights),
+        lights: uniform_array(&gpu, "lights", &light_uniforms, light_capacity),
+        light_capacity,
     });
 }
 

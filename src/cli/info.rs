@@ -47,9 +47,8 @@ fn machine() -> Result<Value, Failure> {
         "limits": {
             "picture": limits.max_texture_dimension_2d,
             "volume side": limits.max_texture_dimension_3d,
-            "volumes at once": limits.max_sampled_textures_per_shader_stage - 1,
+            "volumes at once": limits.max_sampled_textures_per_shader_stage - 3,
             "mesh buffer bytes": limits.max_buffer_size,
-            "table buffer bytes": limits.max_storage_buffer_binding_size,
         },
     }))
 }

@@ -10,7 +10,7 @@ use glam::{Vec2, Vec3};
 /// | `domain` | `Auto` or (low, high) | data values | low below high | `Auto`: the range of an integer format, or of the data |
 /// | `points` | list of (position, (r, g, b), opacity) | position 0..1 in the domain | sorted; opacity 0 to 1 | a ramp from clear to white |
 /// | `iso` | list of (value, width, color, absorption) | data values; per `opacity_length` | – | none |
-/// | `entries` | entries of the lookup table | – | 2 to 16,384 | 1024 |
+/// | `entries` | entries of the lookup table | – | 2 to 8,192 | 1024 |
 /// | `classification` | `Post` | – | – | `Post` |
 /// | `opacity_length` | `Auto` or a length | mm | above 0 | `Auto`: one voxel of the shortest spacing |
 ///
@@ -38,7 +38,7 @@ pub struct TransferFunction {
     /// Level sets shown on top.
     pub iso: Vec<IsoValue>,
     /// Entries of the lookup table.
-    #[reflect(@Range::new(2.0, 16_384.0))]
+    #[reflect(@Range::new(2.0, 8192.0))]
     pub entries: u32,
     /// When the function is applied.
     pub classification: Classification,

@@ -1,6 +1,6 @@
 use super::Gpu;
 use encase::internal::WriteInto;
-use encase::{ShaderType, StorageBuffer, UniformBuffer};
+use encase::{ShaderSize, ShaderType, StorageBuffer, UniformBuffer};
 use wgpu::util::DeviceExt;
 
 /// A uniform buffer that holds `value` in WGSL's layout.
@@ -8,22 +8,45 @@ pub fn uniform_buffer<T: ShaderType + WriteInto>(gpu: &Gpu, label: &str, value: 
     let mut bytes = UniformBuffer::new(Vec::<u8>::new());
     // Writing into a vector that grows cannot fail.
     let _ = bytes.write(value);
-    init(gpu, label, &bytes.into_inner(), wgpu::BufferUsages::UNIFORM)
+    init(gpu, label, &bytes.into_inner())
 }
 
-/// A storage buffer that holds `values` in WGSL's layout. Never empty, since an empty buffer cannot be bound.
-pub fn storage_buffer<T: ShaderType + encase::ShaderSize + WriteInto>(
+/// A uniform buffer that holds an array of `capacity` structs, the first of which are `values` and the rest zero.
+///
+/// For structs that are aligned to 16 bytes, as all with a vector or matrix in them are, the layout of such an array is that of a
+/// storage buffer.
+pub fn uniform_array<T: ShaderType + ShaderSize + WriteInto>(
     gpu: &Gpu,
     label: &str,
     values: &[T],
+    capacity: usize,
 ) -> wgpu::Buffer {
     let mut bytes = StorageBuffer::new(Vec::<u8>::new());
     let _ = bytes.write(&values);
     let mut bytes = bytes.into_inner();
-    bytes.resize(bytes.len().max(T::SHADER_SIZE.get() as usize), 0);
-    init(gpu, label, &bytes, wgpu::BufferUsages::STORAGE)
+    bytes.resize(T::SHADER_SIZE.get() as usize * capacity, 0);
+    init(gpu, label, &bytes)
 }
 
-fn init(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+/// A uniform buffer of structs that are bound one at a time, and the distance in bytes from one to the next.
+pub fn uniform_each<T: ShaderType + ShaderSize + WriteInto>(
+    gpu: &Gpu,
+    label: &str,
+    values: &[T],
+) -> (wgpu::Buffer, u32) {
+    let alignment = gpu.device.limits().min_uniform_buffer_offset_alignment;
+    let stride = (T::SHADER_SIZE.get() as u32).next_multiple_of(alignment);
+    let mut bytes = Vec::new();
+    for value in values {
+        let mut one = UniformBuffer::new(Vec::<u8>::new());
+        let _ = one.write(value);
+        bytes.extend(one.into_inner());
+        bytes.resize(bytes.len().next_multiple_of(stride as usize), 0);
+    }
+    (init(gpu, label, &bytes), stride)
+}
+
+fn init(gpu: &Gpu, label: &str, contents: &[u8]) -> wgpu::Buffer {
+    let usage = wgpu::BufferUsages::UNIFORM;
     gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
 }

@@ -101,10 +101,10 @@ impl Draw {
         })
     }
 
-    /// Makes the pipeline and the bind group current.
-    pub fn begin(&self, pass: &mut wgpu::RenderPass, bind_group: &wgpu::BindGroup) {
+    /// Makes the pipeline and the bind group current. `offsets` choose the structs of [`binding::UNIFORM_EACH`].
+    pub fn begin(&self, pass: &mut wgpu::RenderPass, bind_group: &wgpu::BindGroup, offsets: &[u32]) {
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, bind_group, &[]);
+        pass.set_bind_group(0, bind_group, offsets);
     }
 }
 
@@ -120,16 +120,26 @@ fn entry(index: usize, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
 /// The kinds of binding that draws use.
 pub mod binding {
     /// A uniform buffer.
-    pub const UNIFORM: wgpu::BindingType = buffer(wgpu::BufferBindingType::Uniform);
-    /// A storage buffer that is only read.
-    pub const STORAGE: wgpu::BindingType = buffer(wgpu::BufferBindingType::Storage { read_only: true });
+    pub const UNIFORM: wgpu::BindingType = buffer(false);
+    /// One of several structs in a uniform buffer, chosen by an offset when it is bound.
+    pub const UNIFORM_EACH: wgpu::BindingType = buffer(true);
     /// A 2D texture of floats that is read texel by texel.
     pub const TEXTURE: wgpu::BindingType = texture(wgpu::TextureViewDimension::D2, false);
+    /// A 2D texture of unsigned integers.
+    pub const INTEGERS: wgpu::BindingType = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Uint,
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
     /// A sampler that filters.
     pub const SAMPLER: wgpu::BindingType = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
 
-    const fn buffer(ty: wgpu::BufferBindingType) -> wgpu::BindingType {
-        wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None }
+    const fn buffer(has_dynamic_offset: bool) -> wgpu::BindingType {
+        wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset,
+            min_binding_size: None,
+        }
     }
 
     /// A texture of floats; `filterable` where a sampler filters it.

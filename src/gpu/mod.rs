@@ -10,11 +10,11 @@ pub mod shader;
 mod target;
 mod timer;
 
-pub use buffer::{storage_buffer, uniform_buffer};
+pub use buffer::{uniform_array, uniform_buffer, uniform_each};
 pub use device::{Gpu, GpuOptions};
 pub use draw::{Draw, DrawDescriptor, binding};
 pub use error::GpuError;
 pub use formats::{Filtering, VolumeFormat};
 pub use readback::read_texture;
-pub use target::Target;
+pub use target::{Target, texture_of};
 pub use timer::PassTimer;

@@ -1,4 +1,6 @@
 //! Shaders and what they share: `#import name` brings in `shaders/shared/name.wgsl` once.
+//!
+//! They are built into the program. With `TYNDALL_SHADERS` set to a folder, a file of the same path in it is used instead.
 
 use super::{Gpu, GpuError};
 use std::borrow::Cow;
@@ -6,7 +8,8 @@ use std::borrow::Cow;
 macro_rules! sources {
     ($($name:literal => $path:literal),* $(,)?) => {
         /// Every shader file by its name, as built into the program.
-        pub const SOURCES: &[(&str, &str)] = &[$(($name, include_str!(concat!("../../shaders/", $path)))),*];
+        pub const SOURCES: &[(&str, &str, &str)] =
+            &[$(($name, $path, include_str!(concat!("../../shaders/", $path)))),*];
     };
 }
 
@@ -26,19 +29,19 @@ pub fn expand(name: &str, generated: &[(&str, String)]) -> Result<String, GpuErr
 }
 
 fn append<'a>(
-    name: &'a str,
+    name: &str,
     generated: &'a [(&str, String)],
-    done: &mut Vec<&'a str>,
+    done: &mut Vec<String>,
     text: &mut String,
 ) -> Result<(), GpuError> {
-    done.push(name);
+    done.push(name.into());
     for (index, line) in source(name, generated).unwrap_or_default().lines().enumerate() {
         let Some(import) = line.strip_prefix("#import ").map(str::trim) else {
             text.push_str(line);
             text.push('\n');
             continue;
         };
-        if done.contains(&import) {
+        if done.iter().any(|known| known == import) {
             continue;
         }
         if source(import, generated).is_none() {
@@ -53,9 +56,15 @@ fn append<'a>(
     Ok(())
 }
 
-fn source<'a>(name: &str, generated: &'a [(&str, String)]) -> Option<&'a str> {
-    let made = generated.iter().find(|(known, _)| *known == name).map(|(_, text)| text.as_str());
-    made.or_else(|| SOURCES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text))
+fn source<'a>(name: &str, generated: &'a [(&str, String)]) -> Option<Cow<'a, str>> {
+    if let Some((_, text)) = generated.iter().find(|(known, _)| *known == name) {
+        return Some(Cow::Borrowed(text));
+    }
+    let (_, path, built_in) = SOURCES.iter().find(|(known, ..)| *known == name)?;
+    let folder = std::env::var_os("TYNDALL_SHADERS");
+    let own =
+        folder.and_then(|folder| std::fs::read_to_string(std::path::Path::new(&folder).join(path)).ok());
+    Some(own.map_or(Cow::Borrowed(*built_in), Cow::Owned))
 }
 
 /// Compiles a shader. Errors are those of naga, with the text around them.

@@ -38,3 +38,28 @@ impl Target {
         u64::from(self.texture.width()) * u64::from(self.texture.height()) * texel
     }
 }
+
+/// A 2D texture of these texels, row by row.
+pub fn texture_of(
+    gpu: &Gpu,
+    label: &str,
+    size: UVec2,
+    format: wgpu::TextureFormat,
+    texels: &[u8],
+) -> wgpu::Texture {
+    let texel = format.block_copy_size(None).unwrap_or(4);
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let layout =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size.x * texel), rows_per_image: None };
+    gpu.queue.write_texture(texture.as_image_copy(), texels, layout, texture.size());
+    texture
+}

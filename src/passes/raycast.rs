@@ -9,17 +9,17 @@ use super::surface::Surface;
 use super::upload::{SENTINEL_THRESHOLD, VolumeTexture, VolumeUploadPlugin};
 use crate::components::{Placement, RayCast as RayCastSettings, SceneSettings, VolumeLighting};
 use crate::gpu::{
-    Draw, DrawDescriptor, Filtering, Gpu, GpuError, PassTimer, Target, binding, storage_buffer,
+    Draw, DrawDescriptor, Filtering, Gpu, GpuError, PassTimer, Target, binding, texture_of, uniform_array,
 };
 use crate::loading::LoadedVolume;
 use crate::render::Failure;
 use crate::scene::{Problem, Problems};
-use crate::view::{FrameBuffers, Picture, View, far_background};
+use crate::view::{FrameBuffers, Picture, View, far_background, lights_module};
 use crate::{Stage, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
 use encase::ShaderType;
-use glam::{DAffine3, DVec3, Mat4, UVec3, Vec3};
+use glam::{DAffine3, DVec3, Mat4, UVec2, UVec3, Vec3, Vec4};
 use std::fmt::Write;
 
 /// Casts rays through volumes.
@@ -36,7 +36,8 @@ impl Plugin for RayCastPlugin {
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct RayCaster {
-    draw: Option<(Vec<Filtering>, Draw)>,
+    /// The pipeline, and what it is made for.
+    draw: Option<(Variant, Draw)>,
     tables: Option<Tables>,
     target: Option<Target>,
     sampler: Option<wgpu::Sampler>,
@@ -49,14 +50,28 @@ impl RayCaster {
     }
 }
 
-/// The lookup tables and brick distances of all volumes, one behind the other.
+/// What a pipeline is made for.
+#[derive(Clone, Debug, PartialEq)]
+struct Variant {
+    /// One for each volume.
+    filtering: Vec<Filtering>,
+    light_capacity: usize,
+}
+
+/// The lookup tables and brick distances of all volumes.
 #[derive(Debug)]
 struct Tables {
-    entries: wgpu::Buffer,
-    distances: wgpu::Buffer,
-    /// First entry and first brick of each volume.
-    starts: Vec<(u32, u32)>,
+    /// One row a volume.
+    entries: wgpu::Texture,
+    /// One behind the other, in rows of [`BRICK_ROW`].
+    distances: wgpu::Texture,
+    /// First brick of each volume.
+    starts: Vec<u32>,
+    bytes: (u64, u64),
 }
+
+/// Bricks in a row of their texture.
+const BRICK_ROW: u32 = 2048;
 
 /// Mirror of `VolumeInstance` in `shaders/raycast.wgsl`.
 #[derive(ShaderType, Clone, Debug)]
@@ -66,10 +81,9 @@ pub(crate) struct VolumeInstance {
     pub step: f32,
     pub lookup_scale: f32,
     pub lookup_offset: f32,
-    pub table_start: u32,
     pub table_entries: u32,
-    pub bricks: UVec3,
     pub bricks_start: u32,
+    pub bricks: UVec3,
     pub least_transmittance: f32,
     pub skip_empty: u32,
     pub lighting: u32,
@@ -81,6 +95,9 @@ pub(crate) struct VolumeInstance {
 }
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// Textures of the shader besides those of volumes.
+const OTHER_TEXTURES: u32 = 3;
 
 /// Bindings of the shader in front of the volume textures.
 const FIXED_BINDINGS: u32 = 7;
@@ -124,7 +141,7 @@ fn run(
 ) {
     let mut volumes: Vec<_> = volumes.iter().collect();
     volumes.sort_by_key(|volume| volume.0);
-    let limit = gpu.device.limits().max_sampled_textures_per_shader_stage - 1;
+    let limit = gpu.device.limits().max_sampled_textures_per_shader_stage - OTHER_TEXTURES;
     if volumes.len() > limit as usize {
         let message =
             format!("{} volumes are in the scene; this adapter can show {limit} at once", volumes.len());
@@ -140,7 +157,7 @@ fn run(
         return;
     }
     let timing = timer.as_mut().and_then(|timer| timer.time("raycast"));
-    let drawn = prepare(&gpu, &picture, &volumes, &mut caster, &mut report).map(|()| {
+    let drawn = prepare(&gpu, &picture, &volumes, frame.light_capacity, &mut caster, &mut report).map(|()| {
         let instances = instances(&view, &settings, &volumes, &caster);
         draw(&gpu, &frame, &settings, &volumes, &instances, &surface, &caster, timing);
         report.ran("raycast", &[("pixels", u64::from(picture.size.x) * u64::from(picture.size.y))]);
@@ -153,20 +170,22 @@ fn prepare(
     gpu: &Gpu,
     picture: &Picture,
     volumes: &[VolumeData],
+    light_capacity: usize,
     caster: &mut RayCaster,
     report: &mut Report,
 ) -> Result<(), GpuError> {
-    let filtering: Vec<_> = volumes.iter().map(|volume| volume.3.format.filtering).collect();
-    if caster.draw.as_ref().is_none_or(|(made_for, _)| *made_for != filtering) {
-        caster.draw = Some((filtering.clone(), make(gpu, &filtering)?));
+    let filtering = volumes.iter().map(|volume| volume.3.format.filtering).collect();
+    let variant = Variant { filtering, light_capacity };
+    if caster.draw.as_ref().is_none_or(|(made_for, _)| *made_for != variant) {
+        caster.draw = Some((variant.clone(), make(gpu, &variant)?));
         report.pipelines.push("raycast");
     }
     if caster.tables.as_ref().is_none_or(|tables| tables.starts.len() != volumes.len())
         || volumes.iter().any(|volume| volume.2.is_changed())
     {
         let tables = tables(gpu, volumes);
-        report.gpu_bytes.insert("lookup tables", tables.entries.size());
-        report.gpu_bytes.insert("brick distances", tables.distances.size());
+        report.gpu_bytes.insert("lookup tables", tables.bytes.0);
+        report.gpu_bytes.insert("brick distances", tables.bytes.1);
         caster.tables = Some(tables);
     }
     caster.sampler.get_or_insert_with(|| {
@@ -187,17 +206,18 @@ fn prepare(
     Ok(())
 }
 
-fn make(gpu: &Gpu, filtering: &[Filtering]) -> Result<Draw, GpuError> {
+fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
     let fixed = [
         binding::UNIFORM,
-        binding::STORAGE,
-        binding::STORAGE,
-        binding::STORAGE,
-        binding::STORAGE,
+        binding::UNIFORM,
+        binding::UNIFORM,
+        binding::TEXTURE,
+        binding::INTEGERS,
         binding::TEXTURE,
         binding::SAMPLER,
     ];
-    let textures = filtering
+    let textures = variant
+        .filtering
         .iter()
         .map(|filtering| binding::texture(wgpu::TextureViewDimension::D3, *filtering == Filtering::Sampler));
     let bindings: Vec<_> = fixed.into_iter().chain(textures).collect();
@@ -205,7 +225,10 @@ fn make(gpu: &Gpu, filtering: &[Filtering]) -> Result<Draw, GpuError> {
         gpu,
         &DrawDescriptor {
             name: "raycast",
-            generated: &[("volumes", volumes_module(filtering))],
+            generated: &[
+                ("volumes", volumes_module(&variant.filtering)),
+                lights_module(variant.light_capacity),
+            ],
             entry_points: ("cover", "march"),
             bindings: &bindings,
             attributes: &[],
@@ -217,7 +240,7 @@ fn make(gpu: &Gpu, filtering: &[Filtering]) -> Result<Draw, GpuError> {
 
 /// The WGSL module `volumes`: one texture binding a volume, and `texel_at(volume, place)` that interpolates in it.
 pub(crate) fn volumes_module(filtering: &[Filtering]) -> String {
-    let mut text = format!("const VOLUMES = {}u;\n", filtering.len());
+    let mut text = format!("const VOLUMES = {}u;\nconst BRICK_ROW = {BRICK_ROW}u;\n", filtering.len());
     let mut cases = String::new();
     for (index, filtering) in filtering.iter().enumerate() {
         let binding = FIXED_BINDINGS as usize + index;
@@ -263,21 +286,29 @@ fn eight_loads(index: usize) -> String {
 }
 
 fn tables(gpu: &Gpu, volumes: &[VolumeData]) -> Tables {
+    let width = volumes.iter().map(|volume| volume.2.table.entries.len()).max().unwrap_or(1);
     let (mut entries, mut distances, mut starts) = (Vec::new(), Vec::new(), Vec::new());
     for (_, _, classified, ..) in volumes {
-        starts.push((entries.len() as u32, distances.len() as u32));
+        starts.push(distances.len() as u32);
         entries.extend_from_slice(&classified.table.entries);
+        entries.resize(entries.len().next_multiple_of(width), Vec4::ZERO);
         distances.extend_from_slice(&classified.distances);
     }
-    distances.resize(distances.len().next_multiple_of(4), 0);
-    let words: Vec<u32> = distances
-        .chunks_exact(4)
-        .map(|bytes| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
-        .collect();
+    distances.resize(distances.len().next_multiple_of(BRICK_ROW as usize), 0);
+    let entries_size = UVec2::new(width as u32, volumes.len() as u32);
+    let distances_size = UVec2::new(BRICK_ROW, (distances.len() / BRICK_ROW as usize) as u32);
+    let texels: &[u8] = bytemuck::cast_slice(&entries);
     Tables {
-        entries: storage_buffer(gpu, "lookup tables", &entries),
-        distances: storage_buffer(gpu, "brick distances", &words),
+        entries: texture_of(gpu, "lookup tables", entries_size, FORMAT, texels),
+        distances: texture_of(
+            gpu,
+            "brick distances",
+            distances_size,
+            wgpu::TextureFormat::R8Uint,
+            &distances,
+        ),
         starts,
+        bytes: (texels.len() as u64, distances.len() as u64),
     }
 }
 
@@ -291,12 +322,7 @@ fn instances(
     volumes.iter().zip(starts).map(|(volume, start)| instance(view, settings, volume, *start)).collect()
 }
 
-fn instance(
-    view: &View,
-    settings: &SceneSettings,
-    volume: &VolumeData,
-    (table_start, bricks_start): (u32, u32),
-) -> VolumeInstance {
+fn instance(view: &View, settings: &SceneSettings, volume: &VolumeData, bricks_start: u32) -> VolumeInstance {
     let (_, loaded, classified, texture, placement, lighting, ray_cast) = volume;
     let extent = 2.0 * loaded.half_extent().as_dvec3() / f64::from(settings.millimetres_per_unit);
     let entity_from_texture = DAffine3::from_scale(extent) * DAffine3::from_translation(DVec3::splat(-0.5));
@@ -318,10 +344,9 @@ fn instance(
         step: (voxel * f64::from(ray_cast.step)) as f32,
         lookup_scale: texture.format.scale / (high - low),
         lookup_offset: (texture.format.offset - low) / (high - low),
-        table_start,
         table_entries: classified.table.entries.len() as u32,
-        bricks: UVec3::from(classified.bricks),
         bricks_start,
+        bricks: UVec3::from(classified.bricks),
         least_transmittance: 1.0 - ray_cast.early_termination,
         skip_empty: u32::from(ray_cast.skip_empty),
         lighting,
@@ -349,7 +374,8 @@ fn draw(
     else {
         return;
     };
-    let instances = storage_buffer(gpu, "volume instances", instances);
+    let instances = uniform_array(gpu, "volume instances", instances, instances.len());
+    let (entries, distances) = (view_of(&tables.entries), view_of(&tables.distances));
     let background;
     let behind = match surface.colour() {
         Some(target) => &target.view,
@@ -362,8 +388,8 @@ fn draw(
         frame.frame.as_entire_binding(),
         frame.lights.as_entire_binding(),
         instances.as_entire_binding(),
-        tables.entries.as_entire_binding(),
-        tables.distances.as_entire_binding(),
+        wgpu::BindingResource::TextureView(&entries),
+        wgpu::BindingResource::TextureView(&distances),
         wgpu::BindingResource::TextureView(behind),
         wgpu::BindingResource::Sampler(sampler),
     ];
@@ -385,26 +411,18 @@ fn draw(
         timestamp_writes: timing,
         ..Default::default()
     });
-    draw.begin(&mut pass, &bind_group);
+    draw.begin(&mut pass, &bind_group, &[]);
     pass.draw(0..3, 0..1);
     drop(pass);
     gpu.queue.submit([encoder.finish()]);
 }
 
+fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&Default::default())
+}
+
 /// One texel that says: background, infinitely far away.
 fn background_texture(gpu: &Gpu, settings: &SceneSettings) -> wgpu::TextureView {
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("background"),
-        size: wgpu::Extent3d::default(),
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: FORMAT,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
     let texel = far_background(settings).to_array();
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16), rows_per_image: None };
-    gpu.queue.write_texture(texture.as_image_copy(), bytemuck::bytes_of(&texel), layout, texture.size());
-    texture.create_view(&Default::default())
+    view_of(&texture_of(gpu, "background", UVec2::ONE, FORMAT, bytemuck::bytes_of(&texel)))
 }

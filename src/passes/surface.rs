@@ -5,13 +5,13 @@
 
 use super::upload::MeshBuffers;
 use crate::components::{Phong, Placement, SceneSettings};
-use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, binding, storage_buffer};
+use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, binding, uniform_each};
 use crate::render::Failure;
-use crate::view::{FrameBuffers, Picture, View, far_background, to_eye};
+use crate::view::{FrameBuffers, Picture, View, far_background, lights_module, to_eye};
 use crate::{Stage, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
-use encase::ShaderType;
+use encase::{ShaderSize, ShaderType};
 use glam::{Mat4, Vec3};
 
 /// Draws opaque meshes.
@@ -27,7 +27,8 @@ impl Plugin for SurfacePlugin {
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct Surface {
-    draw: Option<Draw>,
+    /// The pipeline, and the number of lights it is made for.
+    draw: Option<(usize, Draw)>,
     targets: Option<Targets>,
 }
 
@@ -99,12 +100,13 @@ fn draw(
     resize(gpu, surface, picture, report)?;
     let instances: Vec<MeshInstance> =
         meshes.iter().map(|(_, placement, phong)| instance(view, placement, phong)).collect();
-    if surface.draw.is_none() && !instances.is_empty() {
-        surface.draw = Some(make(gpu)?);
+    let capacity = frame.light_capacity;
+    if surface.draw.as_ref().is_none_or(|(made_for, _)| *made_for != capacity) && !instances.is_empty() {
+        surface.draw = Some((capacity, make(gpu, capacity)?));
         report.pipelines.push("surface");
     }
     let Some(targets) = &surface.targets else { return Ok(()) };
-    let instance_buffer = storage_buffer(gpu, "mesh instances", &instances);
+    let (instance_buffer, stride) = uniform_each(gpu, "mesh instances", &instances);
     let background = far_background(settings);
     let mut encoder =
         gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("surface") });
@@ -131,17 +133,20 @@ fn draw(
         ..Default::default()
     });
     let mut triangles = 0;
-    if let Some(draw) = &surface.draw {
+    if let Some((_, draw)) = surface.draw.as_ref().filter(|_| !instances.is_empty()) {
+        let one = std::num::NonZeroU64::new(MeshInstance::SHADER_SIZE.get());
+        let instance = wgpu::BufferBinding { buffer: &instance_buffer, offset: 0, size: one };
         let resources = [
             frame.frame.as_entire_binding(),
             frame.lights.as_entire_binding(),
-            instance_buffer.as_entire_binding(),
+            wgpu::BindingResource::Buffer(instance),
         ];
-        draw.begin(&mut pass, &draw.bind(gpu, &resources));
+        let bind_group = draw.bind(gpu, &resources);
         for (index, (mesh, ..)) in meshes.iter().enumerate() {
+            draw.begin(&mut pass, &bind_group, &[index as u32 * stride]);
             pass.set_vertex_buffer(0, mesh.vertices.slice(..));
             pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..mesh.index_count, 0, index as u32..index as u32 + 1);
+            pass.draw_indexed(0..mesh.index_count, 0, 0..1);
             triangles += u64::from(mesh.index_count / 3);
         }
     }
@@ -154,14 +159,14 @@ fn draw(
     Ok(())
 }
 
-fn make(gpu: &Gpu) -> Result<Draw, GpuError> {
+fn make(gpu: &Gpu, light_capacity: usize) -> Result<Draw, GpuError> {
     Draw::new(
         gpu,
         &DrawDescriptor {
             name: "surface",
-            generated: &[],
+            generated: &[lights_module(light_capacity)],
             entry_points: ("transform", "shade"),
-            bindings: &[binding::UNIFORM, binding::STORAGE, binding::STORAGE],
+            bindings: &[binding::UNIFORM, binding::UNIFORM, binding::UNIFORM_EACH],
             attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3],
             format: FORMAT,
             depth: true,

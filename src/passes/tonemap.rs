@@ -105,7 +105,7 @@ fn draw(
         timestamp_writes: timing,
         ..Default::default()
     });
-    draw.begin(&mut pass, &bind_group);
+    draw.begin(&mut pass, &bind_group, &[]);
     pass.draw(0..3, 0..1);
     drop(pass);
     gpu.queue.submit([encoder.finish()]);
