@@ -1,1 +1,3 @@
 //! Tyndall.
+
+pub mod sources;

@@ -1,0 +1,186 @@
+//! Why a file could not be read: who, what was expected, what was found, how to mend it.
+
+use std::{io, path::PathBuf};
+
+use glam::Vec3;
+
+/// Why a file gave no mesh or volume.
+///
+/// The text is complete in itself: causes are part of it rather than chained.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SourceError {
+    /// The path leads nowhere.
+    #[error("{path}: no such file{}", mend_not_found(.near.as_deref()))]
+    NotFound {
+        /// The path asked for.
+        path: PathBuf,
+        /// The file of that folder with the nearest name, if one is near.
+        near: Option<String>,
+    },
+    /// The operating system refused to open or read it.
+    #[error("{path}: cannot be read: {cause}; check its permissions and the disk it is on")]
+    Io {
+        /// The path asked for.
+        path: PathBuf,
+        /// What the operating system says.
+        cause: io::Error,
+    },
+    /// A folder, a pipe or a device.
+    #[error("{path}: expected a file, found {found}; name a file")]
+    NotAFile {
+        /// The path asked for.
+        path: PathBuf,
+        /// "a folder" or "a pipe, socket or device".
+        found: &'static str,
+    },
+    /// More than a reader accepts.
+    #[error("{path}: {bytes} bytes; at most {limit} are read; {mend}")]
+    TooLarge {
+        /// The path asked for.
+        path: PathBuf,
+        /// The file's length.
+        bytes: u64,
+        /// The reader's limit, in bytes.
+        limit: u64,
+        /// What to do about it.
+        mend: &'static str,
+    },
+    /// The machine has no room for what the file holds.
+    #[error(
+        "{path}: no memory for its {bytes} bytes; close other programs, or use a smaller version of it"
+    )]
+    OutOfMemory {
+        /// The path asked for.
+        path: PathBuf,
+        /// The bytes asked of the allocator.
+        bytes: u64,
+    },
+    /// Not the text this reader reads.
+    #[error("{path}: expected {expected}, found {found}; {mend}")]
+    Encoding {
+        /// The path asked for.
+        path: PathBuf,
+        /// What the reader reads.
+        expected: &'static str,
+        /// What the file begins with.
+        found: &'static str,
+        /// What to do about it.
+        mend: &'static str,
+    },
+    /// A line of a text file that cannot be understood.
+    #[error("{path}:{line}: {problem}")]
+    Line {
+        /// The path asked for.
+        path: PathBuf,
+        /// The line, counted from 1; of a continued line, its first.
+        line: u64,
+        /// What was expected, what was found, how to mend it.
+        problem: String,
+    },
+    /// A mesh file without a surface.
+    #[error("{path}: no triangles: found {found}; export the mesh with its faces")]
+    NoTriangles {
+        /// The path asked for.
+        path: PathBuf,
+        /// What it has instead.
+        found: String,
+    },
+    /// A mesh of more vertices or triangles than 32-bit indices reach.
+    #[error(
+        "{path}: more triangles than 32-bit indices reach ({limit}); split or decimate the mesh"
+    )]
+    TooManyTriangles {
+        /// The path asked for.
+        path: PathBuf,
+        /// How many are allowed.
+        limit: u64,
+    },
+    /// A volume whose file is not as long as its layout says.
+    #[error("{path}: {found}; {expected} ({difference}: {mend})")]
+    Length {
+        /// The path asked for.
+        path: PathBuf,
+        /// How long it is: `262143 bytes`.
+        found: String,
+        /// How long it should be: `64 x 64 x 64 U8 voxels need 262144`.
+        expected: String,
+        /// `1 fewer than expected`.
+        difference: String,
+        /// What to do about it.
+        mend: String,
+    },
+    /// A gzip file that cannot be unpacked.
+    #[error("{path}: {problem} after {unpacked} unpacked bytes; {mend}")]
+    Gzip {
+        /// The path asked for.
+        path: PathBuf,
+        /// How many bytes came out before.
+        unpacked: u64,
+        /// What is wrong with it.
+        problem: String,
+        /// What to do about it.
+        mend: &'static str,
+    },
+    /// A volume layout that no file can have.
+    #[error("{path}: {problem}")]
+    Layout {
+        /// The path asked for.
+        path: PathBuf,
+        /// What is wrong with the layout.
+        problem: LayoutError,
+    },
+}
+
+/// Why a volume cannot have this shape.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LayoutError {
+    /// A side without voxels.
+    #[error("size {} x {} x {}: every side needs at least 1 voxel", .size[0], .size[1], .size[2])]
+    EmptySide {
+        /// Voxels along x, y, z.
+        size: [u32; 3],
+    },
+    /// Voxels without an extent.
+    #[error("spacing {} x {} x {} mm: every component must be finite and greater than 0; use 1 where it is unknown", .spacing.x, .spacing.y, .spacing.z)]
+    Spacing {
+        /// Distance of voxel centres along x, y, z, in mm.
+        spacing: Vec3,
+    },
+    /// More than a volume may have.
+    #[error("{} x {} x {} voxels of {bytes_per_voxel} bytes exceed the limit of {limit} bytes; is the size right? otherwise crop or downsample the volume", .size[0], .size[1], .size[2])]
+    TooLarge {
+        /// Voxels along x, y, z.
+        size: [u32; 3],
+        /// Bytes of one voxel.
+        bytes_per_voxel: u64,
+        /// The limit, in bytes.
+        limit: u64,
+    },
+    /// A header longer than any volume.
+    #[error(
+        "skip_bytes {skip_bytes} exceeds the limit of {limit} bytes; it counts the bytes in front of the first voxel"
+    )]
+    Skip {
+        /// Bytes in front of the first voxel.
+        skip_bytes: u64,
+        /// The limit, in bytes.
+        limit: u64,
+    },
+    /// Samples that do not fill the size.
+    #[error("{samples} samples; {} x {} x {} voxels need {}", .size[0], .size[1], .size[2], .size.iter().map(|&n| u128::from(n)).product::<u128>())]
+    SampleCount {
+        /// Voxels along x, y, z.
+        size: [u32; 3],
+        /// How many samples there are.
+        samples: usize,
+    },
+}
+
+fn mend_not_found(near: Option<&str>) -> String {
+    match near {
+        Some(name) => format!("; did you mean `{name}`?"),
+        None => "; check the path and the folder it is relative to".to_owned(),
+    }
+}

@@ -1,0 +1,58 @@
+//! Triangle meshes in memory.
+
+mod assemble;
+mod normals;
+mod statistics;
+
+use glam::Vec3;
+
+pub(super) use assemble::counted;
+pub use statistics::MeshStatistics;
+
+/// A triangle mesh: every vertex is used, finite and has a unit normal; no triangle has zero area.
+///
+/// Positions are in the units of the file. Triangles are counter-clockwise seen from the side they face.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct MeshData {
+    /// One position per vertex.
+    pub positions: Vec<Vec3>,
+    /// One unit normal per vertex.
+    pub normals: Vec<Vec3>,
+    /// Three indices into the vertices each.
+    pub triangles: Vec<[u32; 3]>,
+    /// What a person should know about how the mesh was read: `3 zero-area triangles dropped`.
+    pub notes: Vec<String>,
+}
+
+impl MeshData {
+    /// A mesh of these triangles, cleaned; each index names a position and the normal of the same index.
+    ///
+    /// A normal that is missing, zero or not finite is computed: angle-weighted, over all triangles that meet at the position.
+    /// Triangles that use a position that is missing or not finite, and triangles of zero area, are dropped; so are vertices no
+    /// triangle uses. Vertices equal in position and normal become one. Every such change leaves a note. The result may be
+    /// empty.
+    pub fn from_triangles(positions: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]]) -> Self {
+        assemble::assemble(positions, normals, triangles)
+    }
+
+    /// The least and greatest corner of the axis-aligned box around the vertices; `None` without any.
+    pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
+        let first = *self.positions.first()?;
+        Some(
+            self.positions
+                .iter()
+                .fold((first, first), |(least, greatest), &position| {
+                    (least.min(position), greatest.max(position))
+                }),
+        )
+    }
+
+    /// Counts and measures the mesh, after joining vertices of equal position.
+    pub fn statistics(&self) -> MeshStatistics {
+        MeshStatistics::of(self)
+    }
+}
+
+#[cfg(test)]
+mod tests;

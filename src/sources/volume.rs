@@ -1,0 +1,228 @@
+//! Regular grids of samples, and the range of values in each brick of them.
+
+mod bricks;
+
+use std::fmt;
+
+use glam::Vec3;
+
+pub use bricks::BrickRanges;
+
+use super::LayoutError;
+
+/// The most bytes of samples a volume may have: 8 GiB.
+pub const MAX_VOLUME_BYTES: u64 = 8 << 30;
+
+/// Floating-point samples beyond this in magnitude count as non-finite: on the GPU they are what marks a missing sample.
+pub const MAX_SAMPLE_MAGNITUDE: f32 = 1e30;
+
+/// How one sample is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum SampleFormat {
+    /// Unsigned, 8 bits.
+    U8,
+    /// Signed, 8 bits.
+    I8,
+    /// Unsigned, 16 bits.
+    U16,
+    /// Signed, 16 bits.
+    I16,
+    /// IEEE 754, 32 bits.
+    F32,
+}
+
+impl SampleFormat {
+    /// Bytes of one sample.
+    pub const fn bytes(self) -> u64 {
+        match self {
+            Self::U8 | Self::I8 => 1,
+            Self::U16 | Self::I16 => 2,
+            Self::F32 => 4,
+        }
+    }
+
+    /// The least and greatest value of an integer format; `None` for floating point.
+    pub const fn integer_range(self) -> Option<(f32, f32)> {
+        match self {
+            Self::U8 => Some((0.0, 255.0)),
+            Self::I8 => Some((-128.0, 127.0)),
+            Self::U16 => Some((0.0, 65535.0)),
+            Self::I16 => Some((-32768.0, 32767.0)),
+            Self::F32 => None,
+        }
+    }
+}
+
+impl fmt::Display for SampleFormat {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Debug::fmt(self, formatter)
+    }
+}
+
+/// The order of a sample's bytes in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Endian {
+    /// Least significant byte first.
+    #[default]
+    Little,
+    /// Most significant byte first.
+    Big,
+}
+
+/// The samples of a volume, in the machine's byte order; x varies fastest, then y, then z.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Samples {
+    /// Unsigned, 8 bits.
+    U8(Vec<u8>),
+    /// Signed, 8 bits.
+    I8(Vec<i8>),
+    /// Unsigned, 16 bits.
+    U16(Vec<u16>),
+    /// Signed, 16 bits.
+    I16(Vec<i16>),
+    /// IEEE 754, 32 bits; NaN and infinities are kept as they are.
+    F32(Vec<f32>),
+}
+
+impl Samples {
+    /// How each sample is stored.
+    pub fn format(&self) -> SampleFormat {
+        match self {
+            Self::U8(_) => SampleFormat::U8,
+            Self::I8(_) => SampleFormat::I8,
+            Self::U16(_) => SampleFormat::U16,
+            Self::I16(_) => SampleFormat::I16,
+            Self::F32(_) => SampleFormat::F32,
+        }
+    }
+
+    /// How many samples there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::U8(samples) => samples.len(),
+            Self::I8(samples) => samples.len(),
+            Self::U16(samples) => samples.len(),
+            Self::I16(samples) => samples.len(),
+            Self::F32(samples) => samples.len(),
+        }
+    }
+
+    /// Whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The sample at `index`, unscaled; `None` outside.
+    pub fn get(&self, index: usize) -> Option<f32> {
+        match self {
+            Self::U8(samples) => samples.get(index).map(|&sample| sample.into()),
+            Self::I8(samples) => samples.get(index).map(|&sample| sample.into()),
+            Self::U16(samples) => samples.get(index).map(|&sample| sample.into()),
+            Self::I16(samples) => samples.get(index).map(|&sample| sample.into()),
+            Self::F32(samples) => samples.get(index).copied(),
+        }
+    }
+
+    /// The samples as they lie in memory.
+    pub fn as_bytes(&self) -> &[u8] {
+        match self {
+            Self::U8(samples) => samples,
+            Self::I8(samples) => bytemuck::cast_slice(samples),
+            Self::U16(samples) => bytemuck::cast_slice(samples),
+            Self::I16(samples) => bytemuck::cast_slice(samples),
+            Self::F32(samples) => bytemuck::cast_slice(samples),
+        }
+    }
+}
+
+/// A volume in memory.
+///
+/// Samples that are NaN, infinite or beyond ±[`MAX_SAMPLE_MAGNITUDE`] stay in `samples`, but neither `range` nor `bricks` see them.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct VolumeData {
+    /// Voxels along x, y, z; each at least 1.
+    pub size: [u32; 3],
+    /// Distance of voxel centres along x, y, z, in mm; finite, greater than 0.
+    pub spacing: Vec3,
+    /// One sample per voxel.
+    pub samples: Samples,
+    /// The least and greatest finite sample; (0, 0) if there is none.
+    pub range: (f32, f32),
+    /// How many samples are not finite.
+    pub non_finite: u64,
+    /// The range of the finite samples in each brick.
+    pub bricks: BrickRanges,
+}
+
+impl VolumeData {
+    /// A volume of these samples; looks at each once to find their ranges.
+    ///
+    /// # Errors
+    ///
+    /// If the size has an empty side or exceeds [`MAX_VOLUME_BYTES`], the spacing is not finite and positive, or the samples
+    /// do not fill the size.
+    pub fn new(size: [u32; 3], spacing: Vec3, samples: Samples) -> Result<Self, LayoutError> {
+        check_spacing(spacing)?;
+        let bytes = checked_bytes(size, samples.format())?;
+        if samples.as_bytes().len() as u64 != bytes {
+            return Err(LayoutError::SampleCount {
+                size,
+                samples: samples.len(),
+            });
+        }
+        let (bricks, non_finite) = bricks::ranges_of(&samples, size);
+        let range = bricks.range().unwrap_or((0.0, 0.0));
+        Ok(Self {
+            size,
+            spacing,
+            samples,
+            range,
+            non_finite,
+            bricks,
+        })
+    }
+
+    /// The sample of voxel (x, y, z), unscaled; `None` outside.
+    pub fn sample(&self, [x, y, z]: [u32; 3]) -> Option<f32> {
+        let [size_x, size_y, size_z] = self.size;
+        if x >= size_x || y >= size_y || z >= size_z {
+            return None;
+        }
+        let row = z as usize * size_y as usize + y as usize;
+        self.samples.get(row * size_x as usize + x as usize)
+    }
+}
+
+/// Bytes of a volume of this size, or why it cannot be.
+pub(super) fn checked_bytes(size: [u32; 3], format: SampleFormat) -> Result<u64, LayoutError> {
+    if size.contains(&0) {
+        return Err(LayoutError::EmptySide { size });
+    }
+    let bytes_per_voxel = format.bytes();
+    size.iter()
+        .try_fold(bytes_per_voxel, |bytes, &side| {
+            bytes.checked_mul(side.into())
+        })
+        .filter(|&bytes| bytes <= MAX_VOLUME_BYTES)
+        .filter(|&bytes| usize::try_from(bytes).is_ok())
+        .ok_or(LayoutError::TooLarge {
+            size,
+            bytes_per_voxel,
+            limit: MAX_VOLUME_BYTES,
+        })
+}
+
+/// Refuses a spacing that is not finite and positive.
+pub(super) fn check_spacing(spacing: Vec3) -> Result<(), LayoutError> {
+    if spacing.is_finite() && spacing.min_element() > 0.0 {
+        Ok(())
+    } else {
+        Err(LayoutError::Spacing { spacing })
+    }
+}
+
+#[cfg(test)]
+mod tests;
