@@ -47,9 +47,7 @@ pub enum SourceError {
         mend: &'static str,
     },
     /// The machine has no room for what the file holds.
-    #[error(
-        "{path}: no memory for its {bytes} bytes; close other programs, or use a smaller version of it"
-    )]
+    #[error("{path}: no memory for its {bytes} bytes; close other programs, or use a smaller version of it")]
     OutOfMemory {
         /// The path asked for.
         path: PathBuf,
@@ -87,9 +85,7 @@ pub enum SourceError {
         found: String,
     },
     /// A mesh of more vertices or triangles than 32-bit indices reach.
-    #[error(
-        "{path}: more triangles than 32-bit indices reach ({limit}); split or decimate the mesh"
-    )]
+    #[error("{path}: more triangles than 32-bit indices reach ({limit}); split or decimate the mesh")]
     TooManyTriangles {
         /// The path asked for.
         path: PathBuf,

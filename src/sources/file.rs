@@ -19,15 +19,8 @@ pub(super) fn open(path: &Path) -> Result<(File, u64), SourceError> {
     // Asked before opening: opening a pipe waits for its writer.
     let metadata = fs::metadata(path).map_err(|cause| io_error(path, cause))?;
     if !metadata.is_file() {
-        let found = if metadata.is_dir() {
-            "a folder"
-        } else {
-            "a pipe, socket or device"
-        };
-        return Err(SourceError::NotAFile {
-            path: path.to_owned(),
-            found,
-        });
+        let found = if metadata.is_dir() { "a folder" } else { "a pipe, socket or device" };
+        return Err(SourceError::NotAFile { path: path.to_owned(), found });
     }
     let file = File::open(path).map_err(|cause| io_error(path, cause))?;
     Ok((file, metadata.len()))
@@ -37,30 +30,19 @@ pub(super) fn open(path: &Path) -> Result<(File, u64), SourceError> {
 pub(super) fn io_error(path: &Path, cause: io::Error) -> SourceError {
     let path = path.to_owned();
     match cause.kind() {
-        io::ErrorKind::NotFound => SourceError::NotFound {
-            near: nearest_name(&path),
-            path,
-        },
+        io::ErrorKind::NotFound => SourceError::NotFound { near: nearest_name(&path), path },
         _ => SourceError::Io { path, cause },
     }
 }
 
 fn nearest_name(path: &Path) -> Option<String> {
     let wanted = path.file_name()?.to_string_lossy().to_lowercase();
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::read_dir(folder)
         .ok()?
         .take(MAX_SUGGESTIONS_SCANNED)
         .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
-        .map(|name| {
-            (
-                strsim::normalized_damerau_levenshtein(&wanted, &name.to_lowercase()),
-                name,
-            )
-        })
+        .map(|name| (strsim::normalized_damerau_levenshtein(&wanted, &name.to_lowercase()), name))
         .filter(|(likeness, _)| *likeness >= NEAR_ENOUGH)
         .max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(&a.1)))
         .map(|(_, name)| name)

@@ -39,13 +39,9 @@ impl MeshData {
     /// The least and greatest corner of the axis-aligned box around the vertices; `None` without any.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let first = *self.positions.first()?;
-        Some(
-            self.positions
-                .iter()
-                .fold((first, first), |(least, greatest), &position| {
-                    (least.min(position), greatest.max(position))
-                }),
-        )
+        Some(self.positions.iter().fold((first, first), |(least, greatest), &position| {
+            (least.min(position), greatest.max(position))
+        }))
     }
 
     /// Counts and measures the mesh, after joining vertices of equal position.

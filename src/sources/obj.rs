@@ -4,6 +4,7 @@
 //! mesh. Not read: materials, texture coordinates, colours, weights, points, lines, free-form curves and surfaces.
 
 mod scan;
+mod statements;
 mod triangulate;
 
 use std::{
@@ -32,18 +33,11 @@ pub fn read_obj(path: &Path) -> Result<MeshData, SourceError> {
     let (file, bytes) = file::open(path)?;
     if bytes > MAX_OBJ_BYTES {
         let mend = "split or decimate the mesh";
-        return Err(SourceError::TooLarge {
-            path: path.to_owned(),
-            bytes,
-            limit: MAX_OBJ_BYTES,
-            mend,
-        });
+        return Err(SourceError::TooLarge { path: path.to_owned(), bytes, limit: MAX_OBJ_BYTES, mend });
     }
     // It may have grown since.
     let mut input = BufReader::with_capacity(1 << 16, file.take(MAX_OBJ_BYTES));
-    let head = input
-        .fill_buf()
-        .map_err(|cause| file::io_error(path, cause))?;
+    let head = input.fill_buf().map_err(|cause| file::io_error(path, cause))?;
     let byte_order_mark = check_encoding(path, &head[..head.len().min(HEAD_BYTES)])?;
     input.consume(byte_order_mark);
     let mut scanner = Scanner::new(path, input);
@@ -65,23 +59,11 @@ pub fn read_obj(path: &Path) -> Result<MeshData, SourceError> {
 
 /// Refuses what is not 8-bit text; gives the length of a byte order mark to skip.
 fn check_encoding(path: &Path, head: &[u8]) -> Result<usize, SourceError> {
-    let zeros = |parity: usize| {
-        head.iter()
-            .skip(parity)
-            .step_by(2)
-            .filter(|&&byte| byte == 0)
-            .count()
-    };
+    let zeros = |parity: usize| head.iter().skip(parity).step_by(2).filter(|&&byte| byte == 0).count();
     let (found, mend) = if head.starts_with(&[0xff, 0xfe]) || zeros(1) > head.len() / 4 {
-        (
-            "UTF-16 (little-endian)",
-            "convert it: iconv -f UTF-16LE -t UTF-8 old.obj > new.obj",
-        )
+        ("UTF-16 (little-endian)", "convert it: iconv -f UTF-16LE -t UTF-8 old.obj > new.obj")
     } else if head.starts_with(&[0xfe, 0xff]) || zeros(0) > head.len() / 4 {
-        (
-            "UTF-16 (big-endian)",
-            "convert it: iconv -f UTF-16BE -t UTF-8 old.obj > new.obj",
-        )
+        ("UTF-16 (big-endian)", "convert it: iconv -f UTF-16BE -t UTF-8 old.obj > new.obj")
     } else if head.starts_with(&[0x1f, 0x8b]) {
         ("gzip", "unpack it with gunzip")
     } else if head.starts_with(b"ply\n") || head.starts_with(b"ply\r") {
@@ -89,18 +71,9 @@ fn check_encoding(path: &Path, head: &[u8]) -> Result<usize, SourceError> {
     } else if head.contains(&0) {
         ("binary data", "export the mesh as Wavefront OBJ")
     } else {
-        return Ok(if head.starts_with(&[0xef, 0xbb, 0xbf]) {
-            3
-        } else {
-            0
-        });
+        return Ok(if head.starts_with(&[0xef, 0xbb, 0xbf]) { 3 } else { 0 });
     };
-    Err(SourceError::Encoding {
-        path: path.to_owned(),
-        expected: "OBJ text in UTF-8",
-        found,
-        mend,
-    })
+    Err(SourceError::Encoding { path: path.to_owned(), expected: "OBJ text in UTF-8", found, mend })
 }
 
 /// The corners of all faces, each with its place in the vectors.
@@ -112,17 +85,10 @@ struct Faces {
 
 impl Faces {
     fn iter(&self) -> impl Iterator<Item = &[u32]> {
-        let faces = if self.arities.is_empty() {
-            self.indices.len() / 3
-        } else {
-            self.arities.len()
-        };
+        let faces = if self.arities.is_empty() { self.indices.len() / 3 } else { self.arities.len() };
         let mut rest = self.indices.as_slice();
         (0..faces).map_while(move |face| {
-            let corners = self
-                .arities
-                .get(face)
-                .map_or(3, |&corners| corners as usize);
+            let corners = self.arities.get(face).map_or(3, |&corners| corners as usize);
             let (corners, others) = rest.split_at_checked(corners)?;
             rest = others;
             Some(corners)
@@ -131,13 +97,8 @@ impl Faces {
 }
 
 /// Has `tobj` parse what the scanner gives; normals that the file lacks are NaN.
-fn parse(
-    scanner: &mut Scanner<'_, impl BufRead>,
-) -> Result<(Vec<Vec3>, Vec<Vec3>, Faces), SourceError> {
-    let options = tobj::LoadOptions {
-        single_index: true,
-        ..Default::default()
-    };
+fn parse(scanner: &mut Scanner<'_, impl BufRead>) -> Result<(Vec<Vec3>, Vec<Vec3>, Faces), SourceError> {
+    let options = tobj::LoadOptions { single_index: true, ..Default::default() };
     let parsed = tobj::load_obj_buf(scanner, &options, |_| Ok(Default::default()));
     if let Some(error) = scanner.error.take() {
         return Err(error);
@@ -146,23 +107,15 @@ fn parse(
         return Err(error);
     }
     let (models, _) = parsed.map_err(|error| {
-        scanner.line_error(&format!(
-            "{error}; expected Wavefront OBJ, export the mesh again"
-        ))
+        scanner.line_error(&format!("{error}; expected Wavefront OBJ, export the mesh again"))
     })?;
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
-    let mut faces = Faces {
-        indices: Vec::new(),
-        arities: Vec::new(),
-    };
+    let mut faces = Faces { indices: Vec::new(), arities: Vec::new() };
     // The scanner leaves out what would begin a second model.
     if let Some(model) = models.into_iter().next() {
         positions = vectors(&model.mesh.positions);
         normals = vectors(&model.mesh.normals);
-        faces = Faces {
-            indices: model.mesh.indices,
-            arities: model.mesh.face_arities,
-        };
+        faces = Faces { indices: model.mesh.indices, arities: model.mesh.face_arities };
     }
     Ok((positions, normals, faces))
 }
@@ -178,11 +131,8 @@ fn triangles_of(
     faces: &Faces,
     notes: &mut Vec<String>,
 ) -> Result<Vec<[u32; 3]>, SourceError> {
-    let is_finite = |corner: &u32| {
-        positions
-            .get(*corner as usize)
-            .is_some_and(|position| position.is_finite())
-    };
+    let is_finite =
+        |corner: &u32| positions.get(*corner as usize).is_some_and(|position| position.is_finite());
     let mut triangles = Vec::with_capacity(faces.indices.len() / 3);
     let mut dropped = 0_u64;
     let (mut corners, mut cut) = (Vec::new(), Vec::new());
@@ -195,29 +145,15 @@ fn triangles_of(
         corners.extend(face.iter().map(|&corner| positions[corner as usize]));
         cut.clear();
         triangulate::triangulate(&corners, &mut cut);
-        triangles.extend(
-            cut.iter()
-                .map(|triangle| triangle.map(|corner| face[corner])),
-        );
+        triangles.extend(cut.iter().map(|triangle| triangle.map(|corner| face[corner])));
     }
     if triangles.len() > u32::MAX as usize / 3 {
-        return Err(SourceError::TooManyTriangles {
-            path: path.to_owned(),
-            limit: u64::from(u32::MAX) / 3,
-        });
+        return Err(SourceError::TooManyTriangles { path: path.to_owned(), limit: u64::from(u32::MAX) / 3 });
     }
     if dropped > 0 {
-        let not_finite = positions
-            .iter()
-            .filter(|position| !position.is_finite())
-            .count();
-        let (vertices, faces) = (
-            counted(positions.len() as u64, "used vertex"),
-            counted(dropped, "face"),
-        );
-        notes.push(format!(
-            "{not_finite} of {vertices} with a NaN or infinite coordinate; {faces} dropped"
-        ));
+        let not_finite = positions.iter().filter(|position| !position.is_finite()).count();
+        let (vertices, faces) = (counted(positions.len() as u64, "used vertex"), counted(dropped, "face"));
+        notes.push(format!("{not_finite} of {vertices} with a NaN or infinite coordinate; {faces} dropped"));
     }
     Ok(triangles)
 }
@@ -228,16 +164,10 @@ fn notes_on(found: &Found) -> Vec<String> {
     let free_forms = counted(found.free_forms, "free-form curve or surface");
     let weights = counted(found.weights, "weight");
     let mut notes: Vec<_> = [
-        (
-            found.short_faces,
-            format!("{short} with fewer than three corners dropped"),
-        ),
+        (found.short_faces, format!("{short} with fewer than three corners dropped")),
         (found.points_and_lines, format!("{elements} ignored")),
         (found.free_forms, format!("{free_forms} ignored")),
-        (
-            found.weights,
-            format!("{weights} (a fourth number of `v`) ignored: only rational curves have any"),
-        ),
+        (found.weights, format!("{weights} (a fourth number of `v`) ignored: only rational curves have any")),
     ]
     .into_iter()
     .filter_map(|(count, note)| (count > 0).then_some(note))
@@ -250,11 +180,8 @@ fn notes_on(found: &Found) -> Vec<String> {
 
 /// What a file without triangles has instead.
 fn describe(found: &Found, notes: &[String]) -> String {
-    let mut parts = vec![format!(
-        "{} and {}",
-        counted(found.vertices, "vertex"),
-        counted(found.faces, "face")
-    )];
+    let mut parts =
+        vec![format!("{} and {}", counted(found.vertices, "vertex"), counted(found.faces, "face"))];
     parts.extend_from_slice(notes);
     parts.join(", ")
 }

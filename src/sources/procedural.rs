@@ -19,14 +19,8 @@ pub fn sphere(radius: f32, subdivisions: u32) -> MeshData {
         triangles = subdivide(&mut directions, &triangles);
     }
     MeshData {
-        positions: directions
-            .iter()
-            .map(|direction| (direction * f64::from(radius)).as_vec3())
-            .collect(),
-        normals: directions
-            .iter()
-            .map(|direction| direction.as_vec3())
-            .collect(),
+        positions: directions.iter().map(|direction| (direction * f64::from(radius)).as_vec3()).collect(),
+        normals: directions.iter().map(|direction| direction.as_vec3()).collect(),
         triangles,
         notes: Vec::new(),
     }
@@ -50,12 +44,7 @@ pub fn cuboid(size: Vec3) -> MeshData {
 /// Each length must be finite and greater than 0.
 pub fn plane(size: Vec2) -> MeshData {
     let mut mesh = MeshData::default();
-    push_rectangle(
-        &mut mesh,
-        Vec3::ZERO,
-        Vec3::Z * size.y / 2.0,
-        Vec3::X * size.x / 2.0,
-    );
+    push_rectangle(&mut mesh, Vec3::ZERO, Vec3::Z * size.y / 2.0, Vec3::X * size.x / 2.0);
     mesh
 }
 
@@ -79,47 +68,27 @@ fn push_rectangle(mesh: &mut MeshData, centre: Vec3, right: Vec3, up: Vec3) {
         centre + right + up,
         centre - right + up,
     ]);
-    mesh.normals
-        .extend([right.normalize_or(Vec3::Y).cross(up.normalize_or(Vec3::Y)); 4]);
-    mesh.triangles
-        .extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    mesh.normals.extend([right.normalize_or(Vec3::Y).cross(up.normalize_or(Vec3::Y)); 4]);
+    mesh.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
 }
 
 fn icosahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let golden = (1.0 + 5.0_f64.sqrt()) / 2.0;
     let mut corners = Vec::with_capacity(12);
-    for (x, y) in [
-        (-1.0, golden),
-        (1.0, golden),
-        (-1.0, -golden),
-        (1.0, -golden),
-    ] {
+    for (x, y) in [(-1.0, golden), (1.0, golden), (-1.0, -golden), (1.0, -golden)] {
         corners.push(DVec3::new(x, y, 0.0).normalize());
     }
-    for (y, z) in [
-        (-1.0, golden),
-        (1.0, golden),
-        (-1.0, -golden),
-        (1.0, -golden),
-    ] {
+    for (y, z) in [(-1.0, golden), (1.0, golden), (-1.0, -golden), (1.0, -golden)] {
         corners.push(DVec3::new(0.0, y, z).normalize());
     }
-    for (z, x) in [
-        (-1.0, golden),
-        (1.0, golden),
-        (-1.0, -golden),
-        (1.0, -golden),
-    ] {
+    for (z, x) in [(-1.0, golden), (1.0, golden), (-1.0, -golden), (1.0, -golden)] {
         corners.push(DVec3::new(x, 0.0, z).normalize());
     }
     let around_first = [[0, 11, 5], [0, 5, 1], [0, 1, 7], [0, 7, 10], [0, 10, 11]];
     let beside_them = [[1, 5, 9], [5, 11, 4], [11, 10, 2], [10, 7, 6], [7, 1, 8]];
     let around_last = [[3, 9, 4], [3, 4, 2], [3, 2, 6], [3, 6, 8], [3, 8, 9]];
     let above_them = [[4, 9, 5], [2, 4, 11], [6, 2, 10], [8, 6, 7], [9, 8, 1]];
-    (
-        corners,
-        [around_first, beside_them, around_last, above_them].concat(),
-    )
+    (corners, [around_first, beside_them, around_last, above_them].concat())
 }
 
 /// Cuts each triangle in four, adding the edges' centres to the directions.

@@ -168,21 +168,11 @@ impl VolumeData {
         check_spacing(spacing)?;
         let bytes = checked_bytes(size, samples.format())?;
         if samples.as_bytes().len() as u64 != bytes {
-            return Err(LayoutError::SampleCount {
-                size,
-                samples: samples.len(),
-            });
+            return Err(LayoutError::SampleCount { size, samples: samples.len() });
         }
         let (bricks, non_finite) = bricks::ranges_of(&samples, size);
         let range = bricks.range().unwrap_or((0.0, 0.0));
-        Ok(Self {
-            size,
-            spacing,
-            samples,
-            range,
-            non_finite,
-            bricks,
-        })
+        Ok(Self { size, spacing, samples, range, non_finite, bricks })
     }
 
     /// The sample of voxel (x, y, z), unscaled; `None` outside.
@@ -203,16 +193,10 @@ pub(super) fn checked_bytes(size: [u32; 3], format: SampleFormat) -> Result<u64,
     }
     let bytes_per_voxel = format.bytes();
     size.iter()
-        .try_fold(bytes_per_voxel, |bytes, &side| {
-            bytes.checked_mul(side.into())
-        })
+        .try_fold(bytes_per_voxel, |bytes, &side| bytes.checked_mul(side.into()))
         .filter(|&bytes| bytes <= MAX_VOLUME_BYTES)
         .filter(|&bytes| usize::try_from(bytes).is_ok())
-        .ok_or(LayoutError::TooLarge {
-            size,
-            bytes_per_voxel,
-            limit: MAX_VOLUME_BYTES,
-        })
+        .ok_or(LayoutError::TooLarge { size, bytes_per_voxel, limit: MAX_VOLUME_BYTES })
 }
 
 /// Refuses a spacing that is not finite and positive.

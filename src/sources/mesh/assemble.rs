@@ -24,9 +24,7 @@ pub(super) fn position_key(position: Vec3) -> [u32; 3] {
 pub(super) fn weld(positions: &[Vec3]) -> Vec<u32> {
     let mut first = HashMap::with_capacity(positions.len());
     let keyed = positions.iter().enumerate();
-    keyed
-        .map(|(index, &position)| *first.entry(position_key(position)).or_insert(index as u32))
-        .collect()
+    keyed.map(|(index, &position)| *first.entry(position_key(position)).or_insert(index as u32)).collect()
 }
 
 /// See [`MeshData::from_triangles`].
@@ -40,17 +38,11 @@ pub(super) fn assemble(positions: &[Vec3], normals: &[Vec3], triangles: &[[u32; 
 }
 
 /// The triangles with three finite corners and an area.
-fn usable_triangles(
-    positions: &[Vec3],
-    triangles: &[[u32; 3]],
-    notes: &mut Vec<String>,
-) -> Vec<[u32; 3]> {
+fn usable_triangles(positions: &[Vec3], triangles: &[[u32; 3]], notes: &mut Vec<String>) -> Vec<[u32; 3]> {
     let (mut outside, mut not_finite, mut flat) = (0, 0, 0);
     let mut usable = Vec::with_capacity(triangles.len());
     for &triangle in triangles {
-        let [Some(a), Some(b), Some(c)] =
-            triangle.map(|index| positions.get(index as usize).copied())
-        else {
+        let [Some(a), Some(b), Some(c)] = triangle.map(|index| positions.get(index as usize).copied()) else {
             outside += 1;
             continue;
         };
@@ -63,16 +55,10 @@ fn usable_triangles(
         }
     }
     if outside > 0 {
-        notes.push(format!(
-            "{} with a missing vertex dropped",
-            counted(outside, "triangle")
-        ));
+        notes.push(format!("{} with a missing vertex dropped", counted(outside, "triangle")));
     }
     if not_finite > 0 {
-        notes.push(format!(
-            "{} with a NaN or infinite coordinate dropped",
-            counted(not_finite, "triangle")
-        ));
+        notes.push(format!("{} with a NaN or infinite coordinate dropped", counted(not_finite, "triangle")));
     }
     if flat > 0 {
         notes.push(format!("{} dropped", counted(flat, "zero-area triangle")));
@@ -88,23 +74,12 @@ fn complete_normals(
     notes: &mut Vec<String>,
 ) -> Vec<Vec3> {
     let mut normals: Vec<Option<Vec3>> = (0..positions.len())
-        .map(|index| {
-            given
-                .get(index)
-                .and_then(|normal| normals::unit(normal.as_dvec3()))
-        })
+        .map(|index| given.get(index).and_then(|normal| normals::unit(normal.as_dvec3())))
         .collect();
     let mut is_used = vec![false; positions.len()];
-    triangles
-        .iter()
-        .flatten()
-        .for_each(|&index| is_used[index as usize] = true);
+    triangles.iter().flatten().for_each(|&index| is_used[index as usize] = true);
     let used = is_used.iter().filter(|&&used| used).count();
-    let missing = is_used
-        .iter()
-        .zip(&normals)
-        .filter(|(used, normal)| **used && normal.is_none())
-        .count();
+    let missing = is_used.iter().zip(&normals).filter(|(used, normal)| **used && normal.is_none()).count();
     if missing > 0 {
         let computed = normals::angle_weighted(positions, &weld(positions), triangles);
         for (normal, computed) in normals.iter_mut().zip(computed) {
@@ -116,18 +91,12 @@ fn complete_normals(
             format!("normals of {missing} of {used} vertices computed (angle-weighted): missing, zero or not finite")
         });
     }
-    normals
-        .into_iter()
-        .map(|normal| normal.unwrap_or(normals::FALLBACK))
-        .collect()
+    normals.into_iter().map(|normal| normal.unwrap_or(normals::FALLBACK)).collect()
 }
 
 /// Makes one vertex of each different pair of position and normal that a triangle uses.
 fn join_vertices(positions: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]]) -> MeshData {
-    let mut mesh = MeshData {
-        triangles: Vec::with_capacity(triangles.len()),
-        ..MeshData::default()
-    };
+    let mut mesh = MeshData { triangles: Vec::with_capacity(triangles.len()), ..MeshData::default() };
     let mut joined = HashMap::new();
     let mut vertex_of: Vec<Option<u32>> = vec![None; positions.len()];
     for triangle in triangles {

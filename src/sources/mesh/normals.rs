@@ -17,11 +17,7 @@ const MIN_RELATIVE_LENGTH: f64 = 1e-9;
 /// The vector in single-precision unit length; `None` if it has no direction.
 pub(super) fn unit(vector: DVec3) -> Option<Vec3> {
     let scale = vector.abs().max_element();
-    if scale > 0.0 && vector.is_finite() {
-        Some((vector / scale).normalize().as_vec3())
-    } else {
-        None
-    }
+    if scale > 0.0 && vector.is_finite() { Some((vector / scale).normalize().as_vec3()) } else { None }
 }
 
 /// The unit normal of a triangle; `None` if its area is zero or not finite.
@@ -29,19 +25,11 @@ pub(super) fn facing(a: Vec3, b: Vec3, c: Vec3) -> Option<DVec3> {
     let [a, b, c] = [a, b, c].map(|position| position.as_dvec3());
     let cross = (b - a).cross(c - a);
     let scale = cross.abs().max_element();
-    if scale > 0.0 && cross.is_finite() {
-        Some((cross / scale).normalize())
-    } else {
-        None
-    }
+    if scale > 0.0 && cross.is_finite() { Some((cross / scale).normalize()) } else { None }
 }
 
 /// One unit normal per position, equal where `welded` names the same position; all triangles must lie inside `positions`.
-pub(super) fn angle_weighted(
-    positions: &[Vec3],
-    welded: &[u32],
-    triangles: &[[u32; 3]],
-) -> Vec<Vec3> {
+pub(super) fn angle_weighted(positions: &[Vec3], welded: &[u32], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![(DVec3::ZERO, 0.0); positions.len()];
     for triangle in triangles {
         let corners = triangle.map(|index| positions[index as usize]);
@@ -49,11 +37,7 @@ pub(super) fn angle_weighted(
             continue;
         };
         for corner in 0..3 {
-            let angle = angle_at(
-                corners[corner],
-                corners[(corner + 1) % 3],
-                corners[(corner + 2) % 3],
-            );
+            let angle = angle_at(corners[corner], corners[(corner + 1) % 3], corners[(corner + 2) % 3]);
             let (sum, weight) = &mut sums[welded[triangle[corner] as usize] as usize];
             *sum += angle * normal;
             *weight += angle;
@@ -61,11 +45,7 @@ pub(super) fn angle_weighted(
     }
     let of_welded = |&first: &u32| {
         let (sum, weight) = sums[first as usize];
-        if sum.length() > MIN_RELATIVE_LENGTH * weight {
-            unit(sum).unwrap_or(FALLBACK)
-        } else {
-            FALLBACK
-        }
+        if sum.length() > MIN_RELATIVE_LENGTH * weight { unit(sum).unwrap_or(FALLBACK) } else { FALLBACK }
     };
     welded.iter().map(of_welded).collect()
 }

@@ -27,20 +27,13 @@ pub struct MeshStatistics {
 impl MeshStatistics {
     pub(super) fn of(mesh: &MeshData) -> Self {
         let welded = weld(&mesh.positions);
-        let triangles: Vec<_> = mesh
-            .triangles
-            .iter()
-            .map(|t| t.map(|index| welded[index as usize]))
-            .collect();
+        let triangles: Vec<_> =
+            mesh.triangles.iter().map(|t| t.map(|index| welded[index as usize])).collect();
         let (open_edges, non_manifold_edges) = count_edges(&triangles);
         Self {
             vertices: mesh.positions.len(),
             triangles: mesh.triangles.len(),
-            area: mesh
-                .triangles
-                .iter()
-                .map(|triangle| area(mesh, triangle))
-                .sum(),
+            area: mesh.triangles.iter().map(|triangle| area(mesh, triangle)).sum(),
             open_edges,
             non_manifold_edges,
             components: count_components(mesh.positions.len(), &triangles),
@@ -56,21 +49,14 @@ fn area(mesh: &MeshData, triangle: &[u32; 3]) -> f64 {
 
 /// How many edges have one triangle, and how many more than two.
 fn count_edges(triangles: &[[u32; 3]]) -> (usize, usize) {
-    let sides = triangles
-        .iter()
-        .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
-    let mut edges: Vec<_> = sides
-        .filter(|(a, b)| a != b)
-        .map(|(a, b)| (a.min(b), a.max(b)))
-        .collect();
+    let sides = triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
+    let mut edges: Vec<_> = sides.filter(|(a, b)| a != b).map(|(a, b)| (a.min(b), a.max(b))).collect();
     edges.sort_unstable();
-    edges
-        .chunk_by(|a, b| a == b)
-        .fold((0, 0), |(open, non_manifold), uses| match uses.len() {
-            1 => (open + 1, non_manifold),
-            2 => (open, non_manifold),
-            _ => (open, non_manifold + 1),
-        })
+    edges.chunk_by(|a, b| a == b).fold((0, 0), |(open, non_manifold), uses| match uses.len() {
+        1 => (open + 1, non_manifold),
+        2 => (open, non_manifold),
+        _ => (open, non_manifold + 1),
+    })
 }
 
 fn count_components(vertices: usize, triangles: &[[u32; 3]]) -> usize {
@@ -85,9 +71,7 @@ fn count_components(vertices: usize, triangles: &[[u32; 3]]) -> usize {
             parents[other as usize] = a;
         }
     }
-    (0..vertices)
-        .filter(|&vertex| is_used[vertex] && parents[vertex] as usize == vertex)
-        .count()
+    (0..vertices).filter(|&vertex| is_used[vertex] && parents[vertex] as usize == vertex).count()
 }
 
 /// The representative of the vertex's part; halves the path to it.

@@ -9,7 +9,8 @@ use std::{
     path::Path,
 };
 
-use crate::sources::SourceError;
+use super::statements::Statements;
+use crate::sources::{SourceError, file};
 
 /// Corners a single face may have; cutting a face up takes up to the square of them.
 pub(super) const MAX_FACE_CORNERS: usize = 16_384;
@@ -38,16 +39,7 @@ pub(super) struct Found {
 /// A reader of normalised statements; after an error of its own it ends, and keeps the error.
 pub(super) struct Scanner<'a, R> {
     path: &'a Path,
-    input: R,
-    /// A `\n` that comes next belongs to the `\r` before it.
-    skip_line_feed: bool,
-    /// Lines read so far.
-    lines_read: u64,
-    /// The statement last given out, as found, and its first line.
-    pub statement: String,
-    pub line: u64,
-    /// Whether the statement's line ended.
-    pub is_terminated: bool,
+    statements: Statements<R>,
     normalised: Vec<u8>,
     given: usize,
     /// Indices that exceeded all before and what was defined by then, to be checked at the end: (kind, index, line).
@@ -68,12 +60,7 @@ impl<'a, R: BufRead> Scanner<'a, R> {
     pub fn new(path: &'a Path, input: R) -> Self {
         Self {
             path,
-            input,
-            skip_line_feed: false,
-            lines_read: 0,
-            statement: String::new(),
-            line: 0,
-            is_terminated: true,
+            statements: Statements::new(input),
             normalised: b"vn nan nan nan\n".to_vec(),
             given: 0,
             ahead: Vec::new(),
@@ -85,31 +72,24 @@ impl<'a, R: BufRead> Scanner<'a, R> {
 
     /// The error of a statement: at its line, with a hint if the file ends in it.
     pub fn line_error(&self, problem: &str) -> SourceError {
-        let cut_off = if self.is_terminated {
+        let cut_off = if self.statements.is_terminated {
             ""
         } else {
             "; the file ends within this line: is it cut off?"
         };
         SourceError::Line {
             path: self.path.to_owned(),
-            line: self.line,
+            line: self.statements.line,
             problem: format!("{problem}{cut_off}"),
         }
     }
 
     /// The error of the first index that no vertex or normal of the whole file answers to.
     pub fn index_error(&self) -> Option<SourceError> {
-        let outside = self
-            .ahead
-            .iter()
-            .find(|(element, index, _)| *index > self.defined(*element))?;
+        let outside = self.ahead.iter().find(|(element, index, _)| *index > self.defined(*element))?;
         let (element, index, line) = *outside;
         let problem = self.outside_problem(element, &index.to_string());
-        Some(SourceError::Line {
-            path: self.path.to_owned(),
-            line,
-            problem,
-        })
+        Some(SourceError::Line { path: self.path.to_owned(), line, problem })
     }
 
     fn defined(&self, element: Element) -> u64 {
@@ -120,11 +100,7 @@ impl<'a, R: BufRead> Scanner<'a, R> {
     }
 
     fn outside_problem(&self, element: Element, index: &str) -> String {
-        let name = if element == Element::Vertex {
-            "vertex"
-        } else {
-            "normal"
-        };
+        let name = if element == Element::Vertex { "vertex" } else { "normal" };
         let defined = self.defined(element);
         format!(
             "a face names {name} {index}, but {defined} are defined; export the mesh again, or correct the index"
@@ -135,11 +111,10 @@ impl<'a, R: BufRead> Scanner<'a, R> {
     fn next_statement(&mut self) -> Result<(), SourceError> {
         self.normalised.clear();
         self.given = 0;
-        while self.normalised.is_empty() && self.read_statement()? {
-            let statement = std::mem::take(&mut self.statement);
-            let result = self.normalise(&statement);
-            self.statement = statement;
-            result?;
+        while self.normalised.is_empty() {
+            let statement = self.statements.next().map_err(|cause| file::io_error(self.path, cause))?;
+            let Some(statement) = statement else { break };
+            self.normalise(&statement)?;
         }
         Ok(())
     }
@@ -177,9 +152,9 @@ impl<'a, R: BufRead> Scanner<'a, R> {
         self.normalised.extend_from_slice(keyword.as_bytes());
         for place in ["x", "y", "z"] {
             let Some(word) = words.next() else {
-                return Err(self.line_error(&format!(
-                    "`{keyword}` needs three numbers, {place} is missing; add it"
-                )));
+                return Err(
+                    self.line_error(&format!("`{keyword}` needs three numbers, {place} is missing; add it"))
+                );
             };
             // How C prints what is not a number: nan(ind), -1.#IND, 1.#QNAN.
             let is_nan = word.contains('#') || word.contains("nan(");
@@ -216,14 +191,13 @@ impl<'a, R: BufRead> Scanner<'a, R> {
                 );
                 return Err(self.line_error(&problem));
             }
-            self.normalised
-                .extend_from_slice(format!(" {vertex}//{normal}").as_bytes());
+            self.normalised.extend_from_slice(format!(" {vertex}//{normal}").as_bytes());
         }
         self.normalised.push(b'\n');
         if corners < 3 {
             self.normalised.clear();
             self.found.short_faces += 1;
-            self.found.is_cut_off = !self.is_terminated;
+            self.found.is_cut_off = !self.statements.is_terminated;
         } else {
             self.found.faces += 1;
         }
@@ -234,95 +208,32 @@ impl<'a, R: BufRead> Scanner<'a, R> {
     fn index(&mut self, element: Element, text: &str, corner: &str) -> Result<u64, SourceError> {
         let Ok(index) = text.parse::<i64>() else {
             let quoted = quote(corner);
-            let problem =
-                format!("`{quoted}` is no face corner; write indices like 7, 7/2, 7/2/5 or 7//5");
+            let problem = format!("`{quoted}` is no face corner; write indices like 7, 7/2, 7/2/5 or 7//5");
             return Err(self.line_error(&problem));
         };
         let defined = self.defined(element);
         if index < 0 {
-            let resolved = defined
-                .checked_sub(index.unsigned_abs())
-                .map(|before| before + 1);
+            let resolved = defined.checked_sub(index.unsigned_abs()).map(|before| before + 1);
             return resolved.ok_or_else(|| self.line_error(&self.outside_problem(element, text)));
         }
         if index == 0 {
-            return Err(self.line_error("a face names index 0, but indices start at 1; export the mesh again, or add 1 to all"));
+            return Err(self.line_error(
+                "a face names index 0, but indices start at 1; export the mesh again, or add 1 to all",
+            ));
         }
         let index = index.unsigned_abs();
         let farthest = &mut self.farthest[element as usize];
         if index > defined && index > *farthest {
             *farthest = index;
-            self.ahead.push((element, index, self.line));
+            self.ahead.push((element, index, self.statements.line));
         }
         Ok(index)
-    }
-
-    /// Reads the next statement: a line and, if it is geometry that ends in `\`, those it continues on. False at the end.
-    fn read_statement(&mut self) -> Result<bool, SourceError> {
-        let mut bytes = Vec::new();
-        self.line = self.lines_read + 1;
-        if !self.read_line(&mut bytes)? {
-            return Ok(false);
-        }
-        let is_geometry = matches!(
-            bytes.trim_ascii_start().first(),
-            Some(b'v' | b'f' | b'l' | b'p')
-        );
-        while is_geometry && bytes.trim_ascii_end().last() == Some(&b'\\') {
-            bytes.truncate(bytes.trim_ascii_end().len() - 1);
-            bytes.push(b' ');
-            if !self.read_line(&mut bytes)? {
-                break;
-            }
-        }
-        self.statement.clear();
-        self.statement.push_str(&String::from_utf8_lossy(&bytes));
-        Ok(true)
-    }
-
-    /// Appends a line without its end, which is `\n`, `\r\n` or `\r`. False at the end of the file.
-    fn read_line(&mut self, line: &mut Vec<u8>) -> Result<bool, SourceError> {
-        let mut is_any = false;
-        self.is_terminated = false;
-        loop {
-            let available = match self.input.fill_buf() {
-                Ok(available) => available,
-                Err(cause) if cause.kind() == io::ErrorKind::Interrupted => continue,
-                Err(cause) => return Err(super::super::file::io_error(self.path, cause)),
-            };
-            if available.is_empty() {
-                self.lines_read += u64::from(is_any);
-                return Ok(is_any);
-            }
-            if std::mem::take(&mut self.skip_line_feed) && available[0] == b'\n' {
-                self.input.consume(1);
-                continue;
-            }
-            let end = available
-                .iter()
-                .position(|&byte| byte == b'\n' || byte == b'\r');
-            let taken = end.unwrap_or(available.len());
-            line.extend_from_slice(&available[..taken]);
-            is_any |= taken > 0;
-            if let Some(end) = end {
-                self.skip_line_feed = available[end] == b'\r';
-                self.input.consume(end + 1);
-                self.lines_read += 1;
-                self.is_terminated = true;
-                return Ok(true);
-            }
-            self.input.consume(taken);
-        }
     }
 }
 
 /// The beginning of a word, fit to print.
 fn quote(word: &str) -> String {
-    let mut quoted: String = word
-        .chars()
-        .take(MAX_QUOTED)
-        .flat_map(char::escape_default)
-        .collect();
+    let mut quoted: String = word.chars().take(MAX_QUOTED).flat_map(char::escape_default).collect();
     if word.chars().nth(MAX_QUOTED).is_some() {
         quoted.push_str("...");
     }

@@ -31,11 +31,7 @@ fn unwound_length(corners: &[Vec3]) -> usize {
         borders[end] = border;
     }
     let period = corners.len() - border;
-    if period >= 3 && corners.len().is_multiple_of(period) {
-        period
-    } else {
-        corners.len()
-    }
+    if period >= 3 && corners.len().is_multiple_of(period) { period } else { corners.len() }
 }
 
 /// Times a polygon that seems to have no ear is looked through again before a corner is cut off regardless.
@@ -58,20 +54,14 @@ impl Clipper {
         let count = corners.len();
         let mut clipper = Self {
             points: project(corners),
-            previous: (0..count)
-                .map(|corner| (corner + count - 1) % count)
-                .collect(),
+            previous: (0..count).map(|corner| (corner + count - 1) % count).collect(),
             next: (0..count).map(|corner| (corner + 1) % count).collect(),
             is_ear: Vec::new(),
             obstacles: Vec::new(),
             rescans: 0,
         };
-        clipper.obstacles = (0..count)
-            .filter(|&corner| clipper.turn_at(corner) <= 0.0)
-            .collect();
-        clipper.is_ear = (0..count)
-            .map(|corner| clipper.find_ear_at(corner))
-            .collect();
+        clipper.obstacles = (0..count).filter(|&corner| clipper.turn_at(corner) <= 0.0).collect();
+        clipper.is_ear = (0..count).map(|corner| clipper.find_ear_at(corner)).collect();
         clipper
     }
 
@@ -99,8 +89,7 @@ impl Clipper {
                 return ear;
             }
         }
-        self.find(start, left, |clipper, corner| clipper.turn_at(corner) > 0.0)
-            .unwrap_or(start)
+        self.find(start, left, |clipper, corner| clipper.turn_at(corner) > 0.0).unwrap_or(start)
     }
 
     /// The first corner from `start` on that satisfies `wanted`.
@@ -121,17 +110,12 @@ impl Clipper {
     }
 
     fn turn_at(&self, corner: usize) -> f64 {
-        turn(
-            self.points[self.previous[corner]],
-            self.points[corner],
-            self.points[self.next[corner]],
-        )
+        turn(self.points[self.previous[corner]], self.points[corner], self.points[self.next[corner]])
     }
 
     /// Whether the corner's triangle is convex and no other corner lies in it or on its border.
     fn find_ear_at(&self, corner: usize) -> bool {
-        let [a, b, c] =
-            [self.previous[corner], corner, self.next[corner]].map(|corner| self.points[corner]);
+        let [a, b, c] = [self.previous[corner], corner, self.next[corner]].map(|corner| self.points[corner]);
         turn(a, b, c) > 0.0
             && !self.obstacles.iter().any(|&obstacle| {
                 let point = self.points[obstacle];
@@ -153,10 +137,7 @@ fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
 /// The corners in the plane of the polygon, so that it is counter-clockwise there.
 fn project(corners: &[Vec3]) -> Vec<DVec2> {
     let origin = corners[0].as_dvec3();
-    let relative: Vec<DVec3> = corners
-        .iter()
-        .map(|corner| corner.as_dvec3() - origin)
-        .collect();
+    let relative: Vec<DVec3> = corners.iter().map(|corner| corner.as_dvec3() - origin).collect();
     // Newell's normal: Sutherland, Sproull and Schumacker, 1974.
     let turns = relative.iter().zip(relative.iter().cycle().skip(1));
     let normal: DVec3 = turns.map(|(&from, &to)| from.cross(to)).sum();
@@ -171,11 +152,7 @@ fn project(corners: &[Vec3]) -> Vec<DVec2> {
     };
     let is_flipped = size.max_element() > normal.max_element();
     let flip = |point: DVec2| {
-        if is_flipped {
-            DVec2::new(point.y, point.x)
-        } else {
-            point
-        }
+        if is_flipped { DVec2::new(point.y, point.x) } else { point }
     };
     relative.into_iter().map(along).map(flip).collect()
 }

@@ -27,12 +27,9 @@ impl BrickRanges {
 
     /// The least and greatest finite sample of all; `None` if there is none.
     pub fn range(&self) -> Option<(f32, f32)> {
-        let widest = self
-            .ranges
-            .iter()
-            .fold([f32::INFINITY, f32::NEG_INFINITY], |widest, range| {
-                [widest[0].min(range[0]), widest[1].max(range[1])]
-            });
+        let widest = self.ranges.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |widest, range| {
+            [widest[0].min(range[0]), widest[1].max(range[1])]
+        });
         (widest[0] <= widest[1]).then_some((widest[0], widest[1]))
     }
 }
@@ -112,27 +109,13 @@ fn scan<T: Sample>(samples: &[T], size: [u32; 3]) -> (BrickRanges, u64) {
             ranges.extend((0..bricks_x).map(|brick_x| {
                 let reached = reach(brick_x, size_x);
                 [
-                    least[reached.clone()]
-                        .iter()
-                        .copied()
-                        .fold(T::GREATEST, lesser)
-                        .into(),
-                    greatest[reached]
-                        .iter()
-                        .copied()
-                        .fold(T::LEAST, greater)
-                        .into(),
+                    least[reached.clone()].iter().copied().fold(T::GREATEST, lesser).into(),
+                    greatest[reached].iter().copied().fold(T::LEAST, greater).into(),
                 ]
             }));
         }
     }
-    (
-        BrickRanges {
-            size: bricks,
-            ranges,
-        },
-        missing,
-    )
+    (BrickRanges { size: bricks, ranges }, missing)
 }
 
 /// Widens the range of each column by the row's sample in it.
