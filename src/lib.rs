@@ -1,16 +1,3 @@
-//! Light scattering in meshes and volumes, as data.
-mod app;
-pub mod cli;
-pub mod components;
-pub mod gpu;
-pub mod loading;
-pub mod optics;
-mod passes;
-pub mod prelude;
-pub mod render;
-pub mod report;
-pub mod scene;
+//! Tyndall.
+
 pub mod sources;
-mod view;
-pub use app::{SceneTime, Stage, TyndallPlugins};
-pub use view::Picture;

@@ -4,6 +4,7 @@
 //! mesh. Not read: materials, texture coordinates, colours, weights, points, lines, free-form curves and surfaces.
 
 mod scan;
+mod statements;
 mod triangulate;
 
 use std::{

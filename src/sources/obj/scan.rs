@@ -9,7 +9,8 @@ use std::{
     path::Path,
 };
 
-use crate::sources::SourceError;
+use super::statements::Statements;
+use crate::sources::{SourceError, file};
 
 /// Corners a single face may have; cutting a face up takes up to the square of them.
 pub(super) const MAX_FACE_CORNERS: usize = 16_384;
@@ -38,16 +39,7 @@ pub(super) struct Found {
 /// A reader of normalised statements; after an error of its own it ends, and keeps the error.
 pub(super) struct Scanner<'a, R> {
     path: &'a Path,
-    input: R,
-    /// A `\n` that comes next belongs to the `\r` before it.
-    skip_line_feed: bool,
-    /// Lines read so far.
-    lines_read: u64,
-    /// The statement last given out, as found, and its first line.
-    pub statement: String,
-    pub line: u64,
-    /// Whether the statement's line ended.
-    pub is_terminated: bool,
+    statements: Statements<R>,
     normalised: Vec<u8>,
     given: usize,
     /// Indices that exceeded all before and what was defined by then, to be checked at the end: (kind, index, line).
@@ -68,12 +60,7 @@ impl<'a, R: BufRead> Scanner<'a, R> {
     pub fn new(path: &'a Path, input: R) -> Self {
         Self {
             path,
-            input,
-            skip_line_feed: false,
-            lines_read: 0,
-            statement: String::new(),
-            line: 0,
-            is_terminated: true,
+            statements: Statements::new(input),
             normalised: b"vn nan nan nan\n".to_vec(),
             given: 0,
             ahead: Vec::new(),
@@ -85,11 +72,14 @@ impl<'a, R: BufRead> Scanner<'a, R> {
 
     /// The error of a statement: at its line, with a hint if the file ends in it.
     pub fn line_error(&self, problem: &str) -> SourceError {
-        let cut_off =
-            if self.is_terminated { "" } else { "; the file ends within this line: is it cut off?" };
+        let cut_off = if self.statements.is_terminated {
+            ""
+        } else {
+            "; the file ends within this line: is it cut off?"
+        };
         SourceError::Line {
             path: self.path.to_owned(),
-            line: self.line,
+            line: self.statements.line,
             problem: format!("{problem}{cut_off}"),
         }
     }
@@ -121,11 +111,10 @@ impl<'a, R: BufRead> Scanner<'a, R> {
     fn next_statement(&mut self) -> Result<(), SourceError> {
         self.normalised.clear();
         self.given = 0;
-        while self.normalised.is_empty() && self.read_statement()? {
-            let statement = std::mem::take(&mut self.statement);
-            let result = self.normalise(&statement);
-            self.statement = statement;
-            result?;
+        while self.normalised.is_empty() {
+            let statement = self.statements.next().map_err(|cause| file::io_error(self.path, cause))?;
+            let Some(statement) = statement else { break };
+            self.normalise(&statement)?;
         }
         Ok(())
     }
@@ -208,7 +197,7 @@ impl<'a, R: BufRead> Scanner<'a, R> {
         if corners < 3 {
             self.normalised.clear();
             self.found.short_faces += 1;
-            self.found.is_cut_off = !self.is_terminated;
+            self.found.is_cut_off = !self.statements.is_terminated;
         } else {
             self.found.faces += 1;
         }
@@ -236,62 +225,9 @@ impl<'a, R: BufRead> Scanner<'a, R> {
         let farthest = &mut self.farthest[element as usize];
         if index > defined && index > *farthest {
             *farthest = index;
-            self.ahead.push((element, index, self.line));
+            self.ahead.push((element, index, self.statements.line));
         }
         Ok(index)
-    }
-
-    /// Reads the next statement: a line and, if it is geometry that ends in `\`, those it continues on. False at the end.
-    fn read_statement(&mut self) -> Result<bool, SourceError> {
-        let mut bytes = Vec::new();
-        self.line = self.lines_read + 1;
-        if !self.read_line(&mut bytes)? {
-            return Ok(false);
-        }
-        let is_geometry = matches!(bytes.trim_ascii_start().first(), Some(b'v' | b'f' | b'l' | b'p'));
-        while is_geometry && bytes.trim_ascii_end().last() == Some(&b'\\') {
-            bytes.truncate(bytes.trim_ascii_end().len() - 1);
-            bytes.push(b' ');
-            if !self.read_line(&mut bytes)? {
-                break;
-            }
-        }
-        self.statement.clear();
-        self.statement.push_str(&String::from_utf8_lossy(&bytes));
-        Ok(true)
-    }
-
-    /// Appends a line without its end, which is `\n`, `\r\n` or `\r`. False at the end of the file.
-    fn read_line(&mut self, line: &mut Vec<u8>) -> Result<bool, SourceError> {
-        let mut is_any = false;
-        self.is_terminated = false;
-        loop {
-            let available = match self.input.fill_buf() {
-                Ok(available) => available,
-                Err(cause) if cause.kind() == io::ErrorKind::Interrupted => continue,
-                Err(cause) => return Err(super::super::file::io_error(self.path, cause)),
-            };
-            if available.is_empty() {
-                self.lines_read += u64::from(is_any);
-                return Ok(is_any);
-            }
-            if std::mem::take(&mut self.skip_line_feed) && available[0] == b'\n' {
-                self.input.consume(1);
-                continue;
-            }
-            let end = available.iter().position(|&byte| byte == b'\n' || byte == b'\r');
-            let taken = end.unwrap_or(available.len());
-            line.extend_from_slice(&available[..taken]);
-            is_any |= taken > 0;
-            if let Some(end) = end {
-                self.skip_line_feed = available[end] == b'\r';
-                self.input.consume(end + 1);
-                self.lines_read += 1;
-                self.is_terminated = true;
-                return Ok(true);
-            }
-            self.input.consume(taken);
-        }
     }
 }
 
