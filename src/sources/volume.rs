@@ -4,6 +4,7 @@ mod bricks;
 
 use std::fmt;
 
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::Vec3;
 
 pub use bricks::BrickRanges;
@@ -17,10 +18,12 @@ pub const MAX_VOLUME_BYTES: u64 = 8 << 30;
 pub const MAX_SAMPLE_MAGNITUDE: f32 = 1e30;
 
 /// How one sample is stored.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[reflect(Default, PartialEq)]
 #[non_exhaustive]
 pub enum SampleFormat {
     /// Unsigned, 8 bits.
+    #[default]
     U8,
     /// Signed, 8 bits.
     I8,
@@ -61,7 +64,8 @@ impl fmt::Display for SampleFormat {
 }
 
 /// The order of a sample's bytes in a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[reflect(Default, PartialEq)]
 pub enum Endian {
     /// Least significant byte first.
     #[default]
@@ -95,6 +99,17 @@ impl Samples {
             Self::U16(_) => SampleFormat::U16,
             Self::I16(_) => SampleFormat::I16,
             Self::F32(_) => SampleFormat::F32,
+        }
+    }
+
+    /// None of these samples, of the same format.
+    pub fn emptied(&self) -> Self {
+        match self {
+            Self::U8(_) => Self::U8(Vec::new()),
+            Self::I8(_) => Self::I8(Vec::new()),
+            Self::U16(_) => Self::U16(Vec::new()),
+            Self::I16(_) => Self::I16(Vec::new()),
+            Self::F32(_) => Self::F32(Vec::new()),
         }
     }
 
