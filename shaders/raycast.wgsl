@@ -62,7 +62,7 @@ struct March {
 @group(0) @binding(6) var linear_sampler: sampler;
 
 // Samples between two looks at the bricks: lanes that march together stay together.
-const RUN = 4u;
+const RUN = 16.0;
 
 fn start_march(index: u32, ray: Ray, surface_distance: f32) -> March {
     let origin = (volumes[index].texture_from_eye * vec4f(ray.origin, 1.0)).xyz;
@@ -82,18 +82,26 @@ fn away_from_zero(v: vec3f) -> vec3f {
     return select(v, vec3f(1e-30), abs(v) < vec3f(1e-30));
 }
 
-fn brick_distance(index: u32, at: vec3u) -> f32 {
-    let bricks = volumes[index].bricks;
-    let brick = volumes[index].bricks_start + (at.z * bricks.y + at.y) * bricks.x + at.x;
+// What the inner loops read of a volume, kept at hand.
+struct Lookup {
+    last: f32,
+    scale: f32,
+    offset: f32,
+    sentinel: f32,
+}
+
+fn brick_distance(bricks: vec3u, first: u32, at: vec3u) -> f32 {
+    let brick = first + (at.z * bricks.y + at.y) * bricks.x + at.x;
     return f32(textureLoad(brick_distances, vec2u(brick % BRICK_ROW, brick / BRICK_ROW), 0).r);
 }
 
-fn look_up(index: u32, texel: f32) -> vec4f {
-    let last = f32(volumes[index].table_entries - 1u);
-    let place = clamp(texel * volumes[index].lookup_scale + volumes[index].lookup_offset, 0.0, 1.0) * last;
-    let below = min(floor(place), last - 1.0);
+// Colour and extinction of a texel.
+fn look_up(index: u32, lookup: Lookup, texel: f32) -> vec4f {
+    let place = clamp(texel * lookup.scale + lookup.offset, 0.0, 1.0) * lookup.last;
+    let below = min(floor(place), lookup.last - 1.0);
     let entry = vec2u(u32(below), index);
-    return mix(textureLoad(tables, entry, 0), textureLoad(tables, entry + vec2u(1u, 0u), 0), place - below);
+    let found = mix(textureLoad(tables, entry, 0), textureLoad(tables, entry + vec2u(1u, 0u), 0), place - below);
+    return vec4f(found.rgb, select(found.a, 0.0, texel > lookup.sentinel));
 }
 
 // Blinn-Phong with the gradient of the field for a normal.
@@ -154,67 +162,74 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
         if nearest == FAR {
             break;
         }
+        let volume = volumes[index];
         let enter = marches[index].enter;
         let leave = marches[index].leave;
         let count = marches[index].count;
-        let step = volumes[index].step;
-        let least = volumes[index].least_transmittance;
-        let lit = volumes[index].lighting == 1u;
-        let direction = (volumes[index].texture_from_eye * vec4f(ray.direction, 0.0)).xyz;
-        let start = (volumes[index].texture_from_eye * vec4f(ray.origin, 1.0)).xyz + direction * enter;
+        let lookup = Lookup(f32(volume.table_entries - 1u), volume.lookup_scale, volume.lookup_offset, volume.sentinel);
+        let direction = (volume.texture_from_eye * vec4f(ray.direction, 0.0)).xyz;
+        let start = (volume.texture_from_eye * vec4f(ray.origin, 1.0)).xyz + direction * enter;
         // The same in bricks.
-        let bricks = volumes[index].size / BRICK;
-        let pace = away_from_zero(direction * bricks * step);
-        let top = vec3f(volumes[index].bricks) - 0.5;
-        let skip = volumes[index].skip_empty == 1u;
+        let bricks = volume.size / BRICK;
+        let pace = away_from_zero(direction * bricks * volume.step);
+        let top = vec3f(volume.bricks) - 0.5;
+        // Segments before the next volume's turn comes.
+        let turn = select(1.0 + floor((until - enter) / volume.step), count, VOLUMES == 1u);
         var done = marches[index].done;
         loop {
             // Leap to the next brick that holds something.
             loop {
-                if !skip || done >= count {
+                if volume.skip_empty == 0u || done >= turn {
                     break;
                 }
                 let at = clamp(start * bricks + pace * (done + 0.5), vec3f(0.0), top);
                 let brick = floor(at);
-                let reach = brick_distance(index, vec3u(brick));
+                let reach = brick_distance(volume.bricks, volume.bricks_start, vec3u(brick));
                 if reach == 0.0 {
                     break;
                 }
                 let wall = select(brick - (reach - 1.0), brick + reach, pace > vec3f(0.0));
                 let walls = (wall - at) / pace;
                 done += max(1.0, ceil(min(walls.x, min(walls.y, walls.z)) - 1e-3));
-                if enter + done * step > until {
-                    break;
-                }
             }
-            let end = min(done + f32(RUN), count);
+            let end = min(done + RUN, turn);
             loop {
-                if done >= end || enter + done * step > until {
+                if done >= end {
                     break;
                 }
-                let length = min(step, leave - enter - done * step);
-                let place = start + direction * (done * step + 0.5 * length);
-                let texel = texel_at(index, place);
-                let entry = look_up(index, texel);
-                done += 1.0;
-                samples += 1.0;
-                let alpha = select(1.0 - exp(-entry.a * length), 0.0, texel > volumes[index].sentinel);
+                var length = 0.0;
+                var place = vec3f(0.0);
+                var texel = 0.0;
+                var entry = vec4f(0.0);
+                // The next sample that absorbs: where it is lit, which costs most, all lanes are to have one.
+                loop {
+                    length = min(volume.step, leave - enter - done * volume.step);
+                    place = start + direction * (done * volume.step + 0.5 * length);
+                    texel = texel_at(index, place);
+                    entry = look_up(index, lookup, texel);
+                    done += 1.0;
+                    samples += 1.0;
+                    if !ANY_LIT || entry.a > 0.0 || done >= end {
+                        break;
+                    }
+                }
+                let alpha = 1.0 - exp(-entry.a * length);
                 var colour = entry.rgb;
-                if lit && alpha > 0.0 {
-                    colour = shade(index, colour, place, texel, ray);
+                if ANY_LIT {
+                    colour = select(colour, shade(index, colour, place, texel, ray), volume.lighting == 1u);
                 }
                 radiance += transmittance * alpha * colour;
                 transmittance *= 1.0 - alpha;
-                if transmittance <= least {
+                if transmittance <= volume.least_transmittance {
                     break;
                 }
             }
-            if done >= count || transmittance <= least || enter + done * step > until {
+            if done >= turn || transmittance <= volume.least_transmittance {
                 break;
             }
         }
         marches[index].done = done;
-        if transmittance <= least {
+        if transmittance <= volume.least_transmittance {
             transmittance = 0.0;
             break;
         }

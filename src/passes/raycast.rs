@@ -14,6 +14,7 @@ use crate::gpu::{
 use crate::loading::LoadedVolume;
 use crate::render::Failure;
 use crate::scene::{Problem, Problems};
+use crate::sources::BrickRanges;
 use crate::view::{FrameBuffers, Picture, View, far_background, lights_module};
 use crate::{Stage, report::Report};
 use bevy_app::{App, Plugin, Update};
@@ -56,6 +57,8 @@ struct Variant {
     /// One for each volume.
     filtering: Vec<Filtering>,
     light_capacity: usize,
+    /// Whether any volume is lit by its gradient, which costs more than the rest together.
+    any_lit: bool,
 }
 
 /// The lookup tables and brick distances of all volumes.
@@ -175,7 +178,8 @@ fn prepare(
     report: &mut Report,
 ) -> Result<(), GpuError> {
     let filtering = volumes.iter().map(|volume| volume.3.format.filtering).collect();
-    let variant = Variant { filtering, light_capacity };
+    let any_lit = volumes.iter().any(|volume| matches!(volume.5, VolumeLighting::Gradient { .. }));
+    let variant = Variant { filtering, light_capacity, any_lit };
     if caster.draw.as_ref().is_none_or(|(made_for, _)| *made_for != variant) {
         caster.draw = Some((variant.clone(), make(gpu, &variant)?));
         report.pipelines.push("raycast");
@@ -226,7 +230,7 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
         &DrawDescriptor {
             name: "raycast",
             generated: &[
-                ("volumes", volumes_module(&variant.filtering)),
+                ("volumes", volumes_module(&variant.filtering, variant.any_lit)),
                 lights_module(variant.light_capacity),
             ],
             entry_points: ("cover", "march"),
@@ -239,8 +243,12 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
 }
 
 /// The WGSL module `volumes`: one texture binding a volume, and `texel_at(volume, place)` that interpolates in it.
-pub(crate) fn volumes_module(filtering: &[Filtering]) -> String {
-    let mut text = format!("const VOLUMES = {}u;\nconst BRICK_ROW = {BRICK_ROW}u;\n", filtering.len());
+pub(crate) fn volumes_module(filtering: &[Filtering], any_lit: bool) -> String {
+    let brick = BrickRanges::BRICK;
+    let count = filtering.len();
+    let mut text = format!(
+        "const VOLUMES = {count}u;\nconst BRICK_ROW = {BRICK_ROW}u;\nconst BRICK = {brick}.0;\nconst ANY_LIT = {any_lit};\n"
+    );
     let mut cases = String::new();
     for (index, filtering) in filtering.iter().enumerate() {
         let binding = FIXED_BINDINGS as usize + index;
