@@ -4,6 +4,8 @@ use std::{env, path::Path};
 
 fn main() {
     println!("cargo::rustc-check-cfg=cfg(tyndall_data)");
+    println!("cargo::rustc-check-cfg=cfg(tyndall_gpu)");
+    println!("cargo::rustc-cfg=tyndall_gpu");
     println!("cargo::rerun-if-env-changed=TYNDALL_DATA");
     println!("cargo::rerun-if-changed=build.rs");
     if env::var_os("TYNDALL_DATA").is_some_and(|folder| Path::new(&folder).is_dir()) {

@@ -104,6 +104,12 @@ fn look_up(index: u32, lookup: Lookup, texel: f32) -> vec4f {
     return vec4f(found.rgb, select(found.a, 0.0, texel > lookup.sentinel));
 }
 
+// 1 - exp(-depth), without the cancellation that many thin segments would add up.
+fn absorbed(depth: f32) -> f32 {
+    let series = depth * (1.0 - depth * (0.5 - depth * (1.0 / 6.0 - depth / 24.0)));
+    return select(1.0 - exp(-depth), series, depth < 0.05);
+}
+
 // Blinn-Phong with the gradient of the field for a normal.
 fn shade(index: u32, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
     let voxel = 1.0 / volumes[index].size;
@@ -213,7 +219,7 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                         break;
                     }
                 }
-                let alpha = 1.0 - exp(-entry.a * length);
+                let alpha = absorbed(entry.a * length);
                 var colour = entry.rgb;
                 if ANY_LIT {
                     colour = select(colour, shade(index, colour, place, texel, ray), volume.lighting == 1u);

@@ -1,6 +1,6 @@
 //! How the framework is put together: stages, and the plugins of the framework itself.
 
-use crate::{components, loading, passes, report::Report, scene, view};
+use crate::{components, loading, passes, render, report::Report, scene, view};
 use bevy_app::{App, Plugin, PluginGroup, PluginGroupBuilder, Update};
 use bevy_ecs::prelude::*;
 
@@ -78,6 +78,7 @@ impl Plugin for ScenePlugin {
             .init_resource::<scene::SceneEntities>()
             .init_resource::<SceneTime>()
             .init_resource::<Report>()
+            .init_resource::<render::Failure>()
             .add_systems(Update, components::place.in_set(Stage::Place));
     }
 }

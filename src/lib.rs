@@ -4,6 +4,7 @@ pub mod cli;
 pub mod components;
 pub mod gpu;
 pub mod loading;
+pub mod mirrors;
 pub mod optics;
 mod passes;
 pub mod prelude;

@@ -4,10 +4,10 @@ use crate::Stage;
 use crate::components::{DirectionalLight, Motion, Placement, Projection, SceneSettings, ViewCamera};
 use crate::gpu::{Gpu, uniform_array, uniform_buffer};
 use crate::loading::{LoadedMesh, LoadedVolume, placed_corners};
+use crate::mirrors::mirror;
 use crate::scene::{Problem, Problems};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
-use encase::ShaderType;
 use glam::dcamera::rh::view::look_at_affine3;
 use glam::{DAffine3, DMat4, DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
 
@@ -106,22 +106,26 @@ impl View {
     }
 }
 
-/// Mirror of `Frame` in `shaders/shared/frame.wgsl`.
-#[derive(ShaderType, Clone, Debug)]
-pub(crate) struct FrameUniform {
-    pub clip_from_eye: Mat4,
-    pub half_extent: Vec2,
-    pub picture: Vec2,
-    pub background: Vec3,
-    pub perspective: u32,
-    pub light_count: u32,
+mirror! {
+    /// Mirror of `Frame` in `shaders/shared/frame.wgsl`.
+    "surface":
+    pub(crate) struct FrameUniform as "Frame" {
+        clip_from_eye: Mat4,
+        half_extent: Vec2,
+        picture: Vec2,
+        background: Vec3,
+        perspective: u32,
+        light_count: u32,
+    }
 }
 
-/// Mirror of `Light` in `shaders/shared/frame.wgsl`.
-#[derive(ShaderType, Clone, Debug)]
-pub(crate) struct LightUniform {
-    pub to_light: Vec3,
-    pub irradiance: Vec3,
+mirror! {
+    /// Mirror of `Light` in `shaders/shared/frame.wgsl`.
+    "surface":
+    pub(crate) struct LightUniform as "Light" {
+        to_light: Vec3,
+        irradiance: Vec3,
+    }
 }
 
 /// The frame's camera and lights on the GPU.

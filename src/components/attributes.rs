@@ -40,9 +40,12 @@ impl Range {
         Self { min: 0.0, max: f64::MAX, above_min: true }
     }
 
-    /// Whether `value` is allowed. NaN never is.
+    /// Whether `value` is allowed. NaN never is. A bound that 32 bits do not hold exactly allows its 32-bit neighbour, which is what
+    /// a field of 32 bits has in its stead.
     pub fn contains(&self, value: f64) -> bool {
-        value <= self.max && if self.above_min { value > self.min } else { value >= self.min }
+        let min = self.min.min(f64::from(self.min as f32));
+        let max = self.max.max(f64::from(self.max as f32));
+        value <= max && if self.above_min { value > min } else { value >= min }
     }
 }
 

@@ -16,10 +16,9 @@ use crate::render::Failure;
 use crate::scene::{Problem, Problems};
 use crate::sources::BrickRanges;
 use crate::view::{FrameBuffers, Picture, View, far_background, lights_module};
-use crate::{Stage, report::Report};
+use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
-use encase::ShaderType;
 use glam::{DAffine3, DVec3, Mat4, UVec2, UVec3, Vec3, Vec4};
 use std::fmt::Write;
 
@@ -76,25 +75,27 @@ struct Tables {
 /// Bricks in a row of their texture.
 const BRICK_ROW: u32 = 2048;
 
-/// Mirror of `VolumeInstance` in `shaders/raycast.wgsl`.
-#[derive(ShaderType, Clone, Debug)]
-pub(crate) struct VolumeInstance {
-    pub texture_from_eye: Mat4,
-    pub size: Vec3,
-    pub step: f32,
-    pub lookup_scale: f32,
-    pub lookup_offset: f32,
-    pub table_entries: u32,
-    pub bricks_start: u32,
-    pub bricks: UVec3,
-    pub least_transmittance: f32,
-    pub skip_empty: u32,
-    pub lighting: u32,
-    pub ambient: f32,
-    pub diffuse: f32,
-    pub specular: f32,
-    pub shininess: f32,
-    pub sentinel: f32,
+mirror! {
+    /// Mirror of `VolumeInstance` in `shaders/raycast.wgsl`.
+    "raycast":
+    pub(crate) struct VolumeInstance as "VolumeInstance" {
+        texture_from_eye: Mat4,
+        size: Vec3,
+        step: f32,
+        lookup_scale: f32,
+        lookup_offset: f32,
+        table_entries: u32,
+        bricks_start: u32,
+        bricks: UVec3,
+        least_transmittance: f32,
+        skip_empty: u32,
+        lighting: u32,
+        ambient: f32,
+        diffuse: f32,
+        specular: f32,
+        shininess: f32,
+        sentinel: f32,
+    }
 }
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;

@@ -8,10 +8,10 @@ use crate::components::{Phong, Placement, SceneSettings};
 use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, binding, uniform_each};
 use crate::render::Failure;
 use crate::view::{FrameBuffers, Picture, View, far_background, lights_module, to_eye};
-use crate::{Stage, report::Report};
+use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
-use encase::{ShaderSize, ShaderType};
+use encase::ShaderSize;
 use glam::{Mat4, Vec3};
 
 /// Draws opaque meshes.
@@ -45,15 +45,17 @@ impl Surface {
     }
 }
 
-/// Mirror of `MeshInstance` in `shaders/surface.wgsl`.
-#[derive(ShaderType, Clone, Debug)]
-pub(crate) struct MeshInstance {
-    pub eye_from_mesh: Mat4,
-    pub eye_from_mesh_normal: Mat4,
-    pub ambient: Vec3,
-    pub shininess: f32,
-    pub diffuse: Vec3,
-    pub specular: Vec3,
+mirror! {
+    /// Mirror of `MeshInstance` in `shaders/surface.wgsl`.
+    "surface":
+    pub(crate) struct MeshInstance as "MeshInstance" {
+        eye_from_mesh: Mat4,
+        eye_from_mesh_normal: Mat4,
+        ambient: Vec3,
+        shininess: f32,
+        diffuse: Vec3,
+        specular: Vec3,
+    }
 }
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;

@@ -7,10 +7,9 @@ use super::surface::Surface;
 use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, binding, uniform_buffer};
 use crate::render::Failure;
 use crate::view::{Picture, View};
-use crate::{Stage, report::Report};
+use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
-use encase::ShaderType;
 
 /// Encodes pictures.
 pub(crate) struct TonemapPlugin;
@@ -30,11 +29,13 @@ pub(crate) struct Tonemap {
     pub encoded: Option<Target>,
 }
 
-/// Mirror of `Display` in `shaders/tonemap.wgsl`.
-#[derive(ShaderType, Clone, Debug)]
-pub(crate) struct DisplayUniform {
-    pub gain: f32,
-    pub exponent: f32,
+mirror! {
+    /// Mirror of `Display` in `shaders/tonemap.wgsl`.
+    "tonemap":
+    pub(crate) struct DisplayUniform as "Display" {
+        gain: f32,
+        exponent: f32,
+    }
 }
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

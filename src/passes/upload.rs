@@ -36,6 +36,12 @@ pub(crate) struct MeshBuffers {
     pub index_count: u32,
 }
 
+impl MeshBuffers {
+    fn bytes(&self) -> u64 {
+        self.vertices.size() + self.indices.size()
+    }
+}
+
 /// A volume on the GPU.
 #[derive(Component, Debug)]
 pub(crate) struct VolumeTexture {
@@ -58,6 +64,7 @@ fn upload_meshes(
     (mut problems, mut report): (ResMut<Problems>, ResMut<Report>),
 ) {
     let limit = gpu.device.limits().max_buffer_size;
+    let mut added = 0;
     for (entity, mut mesh) in &mut meshes {
         let Some(data) = mesh.bypass_change_detection().data.take() else { continue };
         let vertices: Vec<[[f32; 3]; 2]> = data
@@ -78,10 +85,11 @@ fn upload_meshes(
             indices: buffer(&gpu, "indices", index_bytes, wgpu::BufferUsages::INDEX),
             index_count: 3 * data.triangles.len() as u32,
         };
+        added += buffers.bytes();
         report.ran("upload_meshes", &[("triangles", data.triangles.len() as u64)]);
         commands.entity(entity).insert(buffers);
     }
-    let held: u64 = all.iter().map(|mesh| mesh.vertices.size() + mesh.indices.size()).sum();
+    let held: u64 = all.iter().map(MeshBuffers::bytes).sum::<u64>() + added;
     if held > 0 {
         report.gpu_bytes.insert("meshes", held);
     }

@@ -1,0 +1,65 @@
+//! Structs that Rust writes and shaders read, for the tests that compare the two.
+//!
+//! Such a struct is declared with the macro `mirror!`, which derives its layout (encase) and lists its fields beside it, so that no
+//! test can forget one.
+
+use crate::{passes, view};
+
+/// Declares a struct that a shader reads.
+macro_rules! mirror {
+    (
+        $(#[$meta:meta])*
+        $shader:literal:
+        $vis:vis struct $name:ident as $wgsl:literal { $($field:ident: $ty:ty,)* }
+    ) => {
+        $(#[$meta])*
+        #[derive(encase::ShaderType, Clone, Debug)]
+        $vis struct $name { $(pub $field: $ty,)* }
+
+        impl $name {
+            /// What the shader must have too.
+            pub(crate) fn mirror() -> $crate::mirrors::Mirror {
+                let names = [$(stringify!($field)),*];
+                let offset = |index| <Self as encase::ShaderType>::METADATA.offset(index);
+                $crate::mirrors::Mirror {
+                    shader: $shader,
+                    name: $wgsl,
+                    size: <Self as encase::ShaderSize>::SHADER_SIZE.get(),
+                    fields: names.into_iter().enumerate().map(|(index, name)| (name, offset(index))).collect(),
+                }
+            }
+        }
+    };
+}
+pub(crate) use mirror;
+
+/// A struct as Rust lays it out.
+#[derive(Clone, Debug)]
+pub struct Mirror {
+    /// Stem of a shader that reads it.
+    pub shader: &'static str,
+    /// Its name there.
+    pub name: &'static str,
+    /// Bytes.
+    pub size: u64,
+    /// Names and byte offsets of its fields.
+    pub fields: Vec<(&'static str, u64)>,
+}
+
+/// Every such struct.
+pub fn all() -> Vec<Mirror> {
+    vec![
+        view::FrameUniform::mirror(),
+        view::LightUniform::mirror(),
+        passes::surface::MeshInstance::mirror(),
+        passes::raycast::VolumeInstance::mirror(),
+        passes::tonemap::DisplayUniform::mirror(),
+    ]
+}
+
+/// The modules of shaders that are made as the scene needs them, for one that needs all variants: two volumes, of which the sampler
+/// interpolates one and the shader the other.
+pub fn generated_modules() -> Vec<(&'static str, String)> {
+    use crate::gpu::Filtering::{Sampler, Shader};
+    vec![("volumes", passes::raycast::volumes_module(&[Sampler, Shader], true)), view::lights_module(4)]
+}

@@ -1,0 +1,41 @@
+//! Every pass makes its pipelines and runs on wgpu's empty backend: a wrong layout, format or binding shows without any adapter.
+
+use bevy_app::App;
+use tyndall::gpu::{Gpu, GpuOptions};
+use tyndall::report::Report;
+use tyndall::{Picture, TyndallPlugins, render};
+
+/// A device that does nothing, but checks everything.
+fn noop(options: &GpuOptions) -> Gpu {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::NOOP;
+    descriptor.backend_options.noop.enable = true;
+    let instance = wgpu::Instance::new(descriptor);
+    let adapter =
+        pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())).unwrap();
+    pollster::block_on(Gpu::from_adapter(&adapter, options)).unwrap()
+}
+
+#[test]
+fn every_pass_has_valid_pipelines_and_bindings() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("v.raw"), [7; 64]).unwrap();
+    let scene = folder.path().join("scene.ron");
+    let volume = "Volume: Raw(path: \"v.raw\", size: (4, 4, 4))";
+    let text = format!(
+        "(entities: {{ \"sun\": ( DirectionalLight: () ), \"ball\": ( Mesh: Sphere() ),
+            \"a\": ( {volume} ), \"b\": ( {volume}, VolumeLighting: Gradient() ),
+            \"c\": ( Volume: Raw(path: \"v.raw\", size: (4, 4, 1), format: F32) ) }})"
+    );
+    std::fs::write(&scene, text).unwrap();
+    for portable in [false, true] {
+        let mut app = App::new();
+        app.add_plugins(TyndallPlugins).insert_resource(noop(&GpuOptions { portable }));
+        app.insert_resource(Picture { size: glam::UVec2::new(16, 8), ..Default::default() });
+        let document = render::load_scene(&mut app, &scene, &[]);
+        assert!(!document.has_errors(), "{:#?}", document.problems);
+        app.update();
+        assert_eq!(app.world().resource::<Report>().pipelines, ["surface", "raycast", "tonemap"]);
+        render::render(&mut app).unwrap();
+    }
+}
