@@ -17,7 +17,7 @@ struct VolumeInstance {
     texture_from_eye: mat4x4f,
     // Voxels along each axis.
     size: vec3f,
-    // Length of a segment, scene units.
+    // Length of a segment, eye space.
     step: f32,
     // Place in the lookup table = texel * scale + offset.
     lookup_scale: f32,
@@ -39,11 +39,13 @@ struct VolumeInstance {
     shininess: f32,
     // Texels beyond this touch a sample that is not finite.
     sentinel: f32,
+    // Scene units to a unit of eye space.
+    reach: f32,
 }
 
 // Where a ray is within one volume.
 struct March {
-    // The stretch inside the volume, scene units.
+    // The stretch inside the volume, eye space.
     enter: f32,
     leave: f32,
     // Segments done, and all there are.
@@ -219,7 +221,7 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                         break;
                     }
                 }
-                let alpha = absorbed(entry.a * length);
+                let alpha = absorbed(entry.a * volume.reach * length);
                 var colour = entry.rgb;
                 if ANY_LIT {
                     colour = select(colour, shade(index, colour, place, texel, ray), volume.lighting == 1u);

@@ -43,7 +43,8 @@ impl Default for Picture {
 /// Where the picture is taken from, derived from a [`ViewCamera`] or, without one, from what there is to see.
 #[derive(Resource, Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Takes the scene to eye space: the camera at the origin, looking along -z, y up.
+    /// Takes the scene to eye space: the camera at the origin, looking along -z, y up, what it looks at one unit away. So whatever the
+    /// scale of a scene is, shaders compute with numbers about 1.
     pub eye_from_scene: DAffine3,
     /// Projection.
     pub projection: Projection,
@@ -51,9 +52,9 @@ pub struct View {
     pub exposure: f32,
     /// Encoding exponent.
     pub gamma: f32,
-    /// How far the camera is from what it looks at, scene units: the scale of what matters.
+    /// How far the camera is from what it looks at, scene units: the unit of eye space.
     pub reach: f64,
-    /// How far away the farthest corner of anything is, scene units.
+    /// How far away the farthest corner of anything is, in eye space.
     pub far: f64,
 }
 
@@ -70,20 +71,21 @@ impl View {
         let up = placement.transform_vector3(camera.up.as_dvec3());
         let reach = eye.distance(target);
         Self {
-            eye_from_scene: look_at_affine3(eye, target, up.normalize()),
+            eye_from_scene: DAffine3::from_scale(DVec3::splat(reach.recip()))
+                * look_at_affine3(eye, target, up.normalize()),
             projection: camera.projection,
             exposure: camera.exposure,
             gamma: camera.gamma,
             reach,
-            far: reach,
+            far: 1.0,
         }
     }
 
-    /// Half of the picture across and up: tangents in perspective, scene units in an orthographic view.
+    /// Half of the picture across and up: tangents in perspective, units of eye space in an orthographic view.
     fn half_extent(&self, size: UVec2) -> Vec2 {
         let half_height = match self.projection {
             Projection::Perspective { vertical_fov } => (f64::from(vertical_fov).to_radians() / 2.0).tan(),
-            Projection::Orthographic { height } => f64::from(height) / 2.0,
+            Projection::Orthographic { height } => f64::from(height) / 2.0 / self.reach,
         };
         let aspect = f64::from(size.x) / f64::from(size.y);
         Vec2::new((half_height * aspect) as f32, half_height as f32)
@@ -94,7 +96,7 @@ impl View {
         let (x, y) = (f64::from(half_extent.x).recip(), f64::from(half_extent.y).recip());
         let columns = match self.projection {
             Projection::Perspective { .. } => {
-                let near = self.reach * 1e-5;
+                let near = 1e-5;
                 [[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, near, 0.0]]
             }
             Projection::Orthographic { .. } => {
@@ -166,7 +168,7 @@ fn look(
         None => View::of(&camera_on_all(&corners, picture.size), DAffine3::IDENTITY),
     };
     let depths = corners.iter().map(|corner| -new.eye_from_scene.transform_point3(*corner).z);
-    new.far = depths.fold(new.reach, f64::max);
+    new.far = depths.fold(1.0, f64::max);
     view.set_if_neq(new);
 }
 

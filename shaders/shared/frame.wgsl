@@ -1,10 +1,10 @@
-// The camera, the lights and the background of a frame. Eye space: the camera at the origin, x right, y up, looking along -z;
-// lengths in scene units.
+// The camera, the lights and the background of a frame. Eye space: the camera at the origin, x right, y up, looking along -z, and what
+// it looks at one unit away, so that numbers stay about 1 whatever the scale of the scene is.
 
 struct Frame {
     // Reversed depth: 1 at the near plane, 0 at the far end.
     clip_from_eye: mat4x4f,
-    // Half the width and height of the picture: tangents for a perspective camera, scene units for an orthographic one.
+    // Half the width and height of the picture: tangents for a perspective camera, eye space for an orthographic one.
     half_extent: vec2f,
     picture: vec2f,
     background: vec3f,
@@ -21,7 +21,7 @@ struct Light {
 
 struct Ray {
     origin: vec3f,
-    // Unit length, so a distance along the ray is in scene units.
+    // Unit length, so a distance along the ray is one in eye space.
     direction: vec3f,
 }
 

@@ -95,6 +95,7 @@ mirror! {
         specular: f32,
         shininess: f32,
         sentinel: f32,
+        reach: f32,
     }
 }
 
@@ -364,6 +365,7 @@ fn instance(view: &View, settings: &SceneSettings, volume: &VolumeData, bricks_s
         specular,
         shininess,
         sentinel: SENTINEL_THRESHOLD,
+        reach: view.reach as f32,
     }
 }
 

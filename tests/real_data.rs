@@ -1,0 +1,203 @@
+//! Real files, many of them broken, through scene, reader and picture. They lie in the folder that `TYNDALL_DATA` names.
+
+mod support;
+
+use std::path::{Path, PathBuf};
+use support::Studio;
+use tyndall::render;
+use tyndall::scene::Severity;
+
+fn data(path: &str) -> PathBuf {
+    Path::new(&std::env::var("TYNDALL_DATA").unwrap()).join(path)
+}
+
+fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> =
+        std::fs::read_dir(data(folder)).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|path| path.to_string_lossy().ends_with(ending));
+    files.sort();
+    files
+}
+
+/// The picture of a scene, or the errors that it was refused with.
+fn try_draw(studio: &mut Studio, scene: &str) -> Result<Vec<[f32; 3]>, Vec<String>> {
+    let path = studio.file("scene.ron", scene.as_bytes());
+    let document = render::load_scene(&mut studio.app, &path, &[]);
+    assert!(!document.has_errors(), "{:#?}", document.problems);
+    studio.app.insert_resource(tyndall::Picture {
+        size: glam::UVec2::new(48, 48),
+        camera: None,
+        encoded: false,
+    });
+    let drawn = render::render(&mut studio.app);
+    let problems = render::problems(studio.app.world(), &document);
+    match drawn {
+        Ok(render::Image { pixels: render::Pixels::Radiance(pixels), .. }) => Ok(pixels),
+        Ok(_) => unreachable!("radiance was asked for"),
+        Err(error) => {
+            let errors: Vec<String> = problems
+                .iter()
+                .filter(|problem| problem.severity == Severity::Error)
+                .map(ToString::to_string)
+                .collect();
+            assert!(!errors.is_empty(), "{error}");
+            Err(errors)
+        }
+    }
+}
+
+const LIGHT: &str =
+    "\"sun\": ( DirectionalLight: (direction: (-0.4, -0.7, -1.0), irradiance: (3.0, 3.0, 3.0)) ),";
+
+#[test]
+#[cfg_attr(not(all(tyndall_gpu, tyndall_data)), ignore = "needs a graphics adapter and TYNDALL_DATA")]
+fn every_mesh_is_drawn_or_refused_with_a_reason_and_its_place() {
+    let mut refused = 0;
+    let all: Vec<PathBuf> = files("meshes", ".obj").into_iter().chain(files("meshes/odd", ".obj")).collect();
+    assert!(all.len() >= 40, "{}", all.len());
+    for mesh in all {
+        // A studio each: a broken mesh must not live on what the one before left.
+        let mut studio = Studio::new();
+        match try_draw(&mut studio, &format!("(entities: {{ {LIGHT} \"mesh\": ( Mesh: File({mesh:?}) ) }})"))
+        {
+            Ok(pixels) => {
+                assert!(pixels.iter().flatten().all(|value| value.is_finite() && *value >= 0.0), "{mesh:?}");
+                let seen = pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
+                // One vertex at 1e30 makes a needle that no pixel can show.
+                assert!(
+                    seen > 0 || mesh.ends_with("made_huge_coordinates.obj"),
+                    "nothing of {mesh:?} is to be seen"
+                );
+            }
+            Err(errors) => {
+                refused += 1;
+                assert!(errors[0].contains("scene.ron:1:"), "{errors:?}");
+                assert!(errors[0].contains(&*mesh.file_name().unwrap().to_string_lossy()), "{errors:?}");
+            }
+        }
+    }
+    assert!((10..=16).contains(&refused), "{refused} refused");
+}
+
+/// Size and type stand in the names: `tooth_103x94x161_uint16_be.raw.gz`.
+fn described(path: &Path) -> String {
+    let name = path.file_name().unwrap().to_string_lossy().into_owned();
+    let parts: Vec<&str> = name.split(['_', '.']).collect();
+    let size = parts
+        .iter()
+        .find(|part| part.split('x').count() == 3 && part.as_bytes()[0].is_ascii_digit())
+        .unwrap();
+    let format = [("uint8", "U8"), ("uint16", "U16"), ("int16", "I16"), ("float32", "F32")];
+    let (_, format) = format.iter().find(|(written, _)| parts.contains(written)).unwrap();
+    let endian = if parts.contains(&"be") { "Big" } else { "Little" };
+    format!(
+        "Volume: Raw(path: {path:?}, size: ({}), format: {format}, endian: {endian})",
+        size.replace('x', ", ")
+    )
+}
+
+#[test]
+#[cfg_attr(not(all(tyndall_gpu, tyndall_data)), ignore = "needs a graphics adapter and TYNDALL_DATA")]
+fn every_volume_is_drawn() {
+    let all = files("volumes", ".raw.gz");
+    assert!(all.len() >= 15, "{}", all.len());
+    for volume in all {
+        let mut studio = Studio::new();
+        let scene = format!(
+            "(entities: {{ {LIGHT} \"v\": ( {}, VolumeLighting: Gradient(), RayCast: (step: 4.0) ) }})",
+            described(&volume)
+        );
+        let pixels = try_draw(&mut studio, &scene).unwrap_or_else(|errors| panic!("{volume:?}: {errors:?}"));
+        assert!(pixels.iter().flatten().all(|value| value.is_finite() && *value >= 0.0), "{volume:?}");
+        // Values that use little of their format's range are faint in the default ramp.
+        assert!(pixels.iter().any(|pixel| pixel[0] > 1e-6), "nothing of {volume:?} is to be seen");
+    }
+}
+
+#[test]
+#[cfg_attr(not(all(tyndall_gpu, tyndall_data)), ignore = "needs a graphics adapter and TYNDALL_DATA")]
+fn lying_volumes_are_refused_and_constant_ones_are_drawn() {
+    let draw = |name: &str, size: &str| {
+        let volume = data("volumes/odd").join(name);
+        try_draw(
+            &mut Studio::new(),
+            &format!("(entities: {{ \"v\": ( Volume: Raw(path: {volume:?}, size: ({size})) ) }})"),
+        )
+    };
+    let short = draw("bucky_truncated_20000.raw", "32, 32, 32").unwrap_err();
+    assert!(short[0].contains("20000") && short[0].contains("32768"), "{short:?}");
+    let long = draw("bucky_one_byte_long.raw", "32, 32, 32").unwrap_err();
+    assert!(long[0].contains("32769") && long[0].contains("skip_bytes"), "{long:?}");
+    let huge = draw("constant_16.raw", "4294967295, 4294967295, 4294967295").unwrap_err();
+    assert!(huge[0].contains("4294967295"), "{huge:?}");
+    assert!(draw("constant_16.raw", "16, 16, 16").is_ok());
+}
+
+/// Bars from the low corner along x (value 85), y (170) and z (255): each end is where its axis says, at the spacing written.
+#[test]
+#[cfg_attr(not(all(tyndall_gpu, tyndall_data)), ignore = "needs a graphics adapter and TYNDALL_DATA")]
+fn the_axes_of_a_volume_are_those_of_the_scene() {
+    let mut studio = Studio::new();
+    let volume = data("volumes/axes_test_96x64x48_uint8.raw.gz");
+    let mut seen = |eye: &str, up: &str, points: &str| {
+        let scene = format!(
+            "(entities: {{
+                \"eye\": ( ViewCamera: (eye: {eye}, up: {up}, projection: Orthographic(height: 96.0)) ),
+                \"v\": ( Volume: Raw(path: {volume:?}, size: (96, 64, 48), spacing: (1.0, 1.5, 2.0)),
+                    TransferFunction: (points: [{points}]), RayCast: (step: 0.5) ) }})"
+        );
+        let path = studio.file("scene.ron", scene.as_bytes());
+        let document = render::load_scene(&mut studio.app, &path, &[]);
+        assert!(!document.has_errors(), "{:#?}", document.problems);
+        studio.app.insert_resource(tyndall::Picture {
+            size: glam::UVec2::new(96, 96),
+            camera: None,
+            encoded: false,
+        });
+        let Ok(render::Image { pixels: render::Pixels::Radiance(pixels), .. }) =
+            render::render(&mut studio.app)
+        else {
+            panic!()
+        };
+        // Columns and rows that show anything.
+        let shown = |along: usize| {
+            let lit = |i: usize| {
+                pixels
+                    .iter()
+                    .enumerate()
+                    .any(|(at, pixel)| (if along == 0 { at % 96 } else { at / 96 }) == i && pixel[0] > 0.2)
+            };
+            let all: Vec<usize> = (0..96).filter(|i| lit(*i)).collect();
+            (all[0], all[all.len() - 1])
+        };
+        (shown(0), shown(1))
+    };
+    let only = |value: f32| {
+        let at = value / 255.0;
+        format!(
+            "({:?}, (1.0, 1.0, 1.0), 0.0), ({:?}, (1.0, 1.0, 1.0), 0.9), ({:?}, (1.0, 1.0, 1.0), 0.9), ({:?}, (1.0, 1.0, 1.0), 0.0)",
+            at - 0.02,
+            at - 0.01,
+            (at + 0.01).min(0.999),
+            (at + 0.02).min(1.0)
+        )
+    };
+    // The volume measures 96 mm along each axis. From +z, x is to the right and y up.
+    let ((left, right), _) = seen("(0.0, 0.0, 200.0)", "(0.0, 1.0, 0.0)", &only(85.0));
+    assert!(left <= 8 && right > 40, "the bar along x goes from {left} to {right}");
+    let ((_, right), (top, bottom)) = seen("(0.0, 0.0, 200.0)", "(0.0, 1.0, 0.0)", &only(170.0));
+    assert!(
+        bottom >= 80 && top < 40 && right < 40,
+        "the bar along y goes from row {bottom} to {top}, at most column {right}"
+    );
+    // From +x, with y up, z grows to the left.
+    let ((left, right), (top, _)) = seen(
+        "(200.0, 0.0, 0.0)",
+        "(0.0, 1.0, 0.0)",
+        "(0.97, (1.0, 1.0, 1.0), 0.0), (1.0, (1.0, 1.0, 1.0), 0.9)",
+    );
+    assert!(
+        right >= 70 && left < 40 && top > 40,
+        "the bar along z goes from column {right} to {left}, at row {top}"
+    );
+}
