@@ -85,11 +85,12 @@ fn complete_normals(
         for (normal, computed) in normals.iter_mut().zip(computed) {
             normal.get_or_insert(computed);
         }
-        notes.push(if missing == used {
-            "normals computed (angle-weighted)".to_owned()
-        } else {
-            format!("normals of {missing} of {used} vertices computed (angle-weighted): missing, zero or not finite")
-        });
+        // A mesh without any normals is an ordinary one.
+        if missing < used {
+            notes.push(format!(
+                "normals of {missing} of {used} vertices computed (angle-weighted): missing, zero or not finite"
+            ));
+        }
     }
     normals.into_iter().map(|normal| normal.unwrap_or(normals::FALLBACK)).collect()
 }

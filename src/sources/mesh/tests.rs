@@ -12,7 +12,7 @@ fn tetrahedron(scale: f32) -> Vec<Vec3> {
 #[test]
 fn normals_are_the_same_at_every_scale() {
     let reference = MeshData::from_triangles(&tetrahedron(1.0), &[], &TETRAHEDRON);
-    assert_eq!(reference.notes, ["normals computed (angle-weighted)"]);
+    assert!(reference.notes.is_empty(), "{:?}", reference.notes);
     assert!(reference.normals[0].abs_diff_eq(Vec3::splat(-1.0 / 3.0_f32.sqrt()), 1e-6));
     for scale in [1e-44, 1e-38, 1e-30, 1e-10, 1e10, 1e30, 3e38] {
         let mesh = MeshData::from_triangles(&tetrahedron(scale), &[], &TETRAHEDRON);
@@ -62,7 +62,6 @@ fn what_cannot_be_shown_is_dropped_with_a_note() {
             "1 triangle with a missing vertex dropped",
             "1 triangle with a NaN or infinite coordinate dropped",
             "3 zero-area triangles dropped",
-            "normals computed (angle-weighted)",
         ]
     );
     assert_eq!(MeshData::from_triangles(&[], &[], &[[0, 1, 2]]).bounds(), None);

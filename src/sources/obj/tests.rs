@@ -143,7 +143,6 @@ fn what_is_ignored_is_noted() {
         "1 free-form curve or surface ignored",
         "1 weight (a fourth number of `v`) ignored: only rational curves have any",
         "1 of 9 used vertices with a NaN or infinite coordinate; 1 face dropped",
-        "normals computed (angle-weighted)",
     ];
     assert_eq!(read(text).unwrap().notes, notes);
 }

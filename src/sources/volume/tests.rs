@@ -97,24 +97,3 @@ fn samples_are_reached_by_position() {
     assert_eq!(volume.samples.format().integer_range(), Some((-32768.0, 32767.0)));
     assert_eq!((volume.samples.len(), volume.samples.as_bytes().len()), (12, 24));
 }
-
-/// Run with `cargo test --release -- --ignored --nocapture bricks_of_a_large`.
-#[test]
-#[ignore = "a measurement, meant for --release"]
-fn bricks_of_a_large_volume_take_milliseconds() {
-    let count = 1 << 24;
-    let formats = [
-        Samples::U8(noise(count).map(|n| n as u8).collect()),
-        Samples::I16(noise(count).map(|n| n as i16).collect()),
-        Samples::F32(noise(count).map(|n| n as f32).collect()),
-    ];
-    for samples in formats {
-        let format = samples.format();
-        let start = std::time::Instant::now();
-        let volume = VolumeData::new([256; 3], Vec3::ONE, samples).unwrap();
-        let elapsed = start.elapsed();
-        println!("256^3 {format}: {elapsed:?}, range {:?}", volume.range);
-        // Floating point, which has values to leave out, may take longer.
-        assert!(format != SampleFormat::U8 || elapsed.as_millis() < 60, "{elapsed:?}");
-    }
-}

@@ -1,0 +1,106 @@
+//! What a frame costs, part by part: reading, scanning, drawing. `cargo bench --bench frame`.
+//!
+//! Compare with `cargo bench --bench frame -- --baseline NAME` after `--save-baseline NAME`; absolute times say little on a shared machine.
+#![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
+
+use bevy_app::App;
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use glam::{UVec2, Vec3};
+use std::fmt::Write;
+use std::hint::black_box;
+use std::path::Path;
+use tyndall::gpu::{Gpu, GpuOptions};
+use tyndall::sources::{Samples, VolumeData};
+use tyndall::{Picture, TyndallPlugins, render};
+
+/// A ball of density in 128^3 voxels, 8 bits.
+fn ball() -> Vec<u8> {
+    let n = 128i32;
+    let cells = (0..n).flat_map(|z| (0..n).flat_map(move |y| (0..n).map(move |x| [x, y, z])));
+    cells
+        .map(|cell| {
+            let squared: i32 = cell.iter().map(|i| (2 * i - n).pow(2)).sum();
+            (255.0 * (1.2 - f64::from(squared).sqrt() / f64::from(n)).clamp(0.0, 1.0)) as u8
+        })
+        .collect()
+}
+
+fn scan(criterion: &mut Criterion) {
+    let samples = ball();
+    let mut group = criterion.benchmark_group("scan 128^3");
+    group.bench_function("U8", |bench| {
+        bench.iter(|| VolumeData::new([128; 3], Vec3::ONE, Samples::U8(black_box(samples.clone()))))
+    });
+    let floats: Vec<f32> = samples.iter().map(|sample| f32::from(*sample)).collect();
+    group.bench_function("F32", |bench| {
+        bench.iter(|| VolumeData::new([128; 3], Vec3::ONE, Samples::F32(black_box(floats.clone()))))
+    });
+    group.finish();
+}
+
+fn read(criterion: &mut Criterion) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("many.ron");
+    let mut text = String::from("(entities: {\n");
+    for index in 0..10_000 {
+        let _ = writeln!(
+            text,
+            "\"ball {index}\": ( Transform: (translation: ({index}.0, 0.0, 0.0)), Mesh: Sphere(subdivisions: 0) ), // a ball"
+        );
+    }
+    text.push_str("})\n");
+    std::fs::write(&path, text).expect("the scene is written");
+    let mut app = App::new();
+    app.add_plugins(TyndallPlugins);
+    criterion.benchmark_group("scene of 10,000 entities").sample_size(10).bench_function(
+        "read and reconcile",
+        |bench| {
+            bench.iter(|| render::load_scene(&mut app, &path, &[]));
+        },
+    );
+}
+
+fn draw(criterion: &mut Criterion) {
+    let Ok(gpu) = pollster::block_on(Gpu::new(&GpuOptions::default())) else {
+        eprintln!("no graphics adapter: drawing is not measured");
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    std::fs::write(folder.path().join("ball.raw"), ball()).expect("the volume is written");
+    let mut app = App::new();
+    app.add_plugins(TyndallPlugins).insert_resource(gpu);
+    app.insert_resource(Picture { size: UVec2::new(600, 340), ..Default::default() });
+    let mut group = criterion.benchmark_group("draw 600x340");
+    group.sample_size(10);
+    for (name, entities) in [
+        ("mesh of 20,480 triangles", "\"ball\": ( Mesh: Sphere() ),".to_owned()),
+        ("emission-absorption 128^3", volume("EmissionAbsorption")),
+        ("gradient 128^3", volume("Gradient()")),
+    ] {
+        load(&mut app, folder.path(), &entities);
+        group.bench_function(BenchmarkId::from_parameter(name), |bench| {
+            bench.iter(|| render::render(&mut app))
+        });
+    }
+    group.finish();
+}
+
+fn volume(lighting: &str) -> String {
+    format!(
+        "\"v\": ( Volume: Raw(path: \"ball.raw\", size: (128, 128, 128)), VolumeLighting: {lighting},
+            TransferFunction: (points: [(0.3, (0.2, 0.4, 0.8), 0.0), (1.0, (1.0, 0.8, 0.5), 0.1)]) ),"
+    )
+}
+
+fn load(app: &mut App, folder: &Path, entities: &str) {
+    let path = folder.join("scene.ron");
+    let text = format!(
+        "(entities: {{ \"sun\": ( DirectionalLight: (direction: (-1.0, -1.0, -1.0)) ), {entities} }})"
+    );
+    std::fs::write(&path, text).expect("the scene is written");
+    let document = render::load_scene(app, &path, &[]);
+    assert!(!document.has_errors(), "{:#?}", document.problems);
+}
+
+criterion_group!(benches, scan, read, draw);
+criterion_main!(benches);
