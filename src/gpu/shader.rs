@@ -28,9 +28,9 @@ pub fn expand(name: &str, generated: &[(&str, String)]) -> Result<String, GpuErr
     Ok(text)
 }
 
-fn append<'a>(
+fn append(
     name: &str,
-    generated: &'a [(&str, String)],
+    generated: &[(&str, String)],
     done: &mut Vec<String>,
     text: &mut String,
 ) -> Result<(), GpuError> {
