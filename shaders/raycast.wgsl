@@ -173,9 +173,9 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let bricks = volume.size / BRICK;
         let pace = away_from_zero(direction * bricks * volume.step);
         let top = vec3f(volume.bricks) - 0.5;
-        // Segments before the next volume's turn comes.
-        let turn = select(1.0 + floor((until - enter) / volume.step), count, VOLUMES == 1u);
+        // Segments before the next volume's turn comes: no more than there are, and at least one, whatever rounding says.
         var done = marches[index].done;
+        let turn = min(count, max(done, floor((until - enter) / volume.step)) + 1.0);
         loop {
             // Leap to the next brick that holds something.
             loop {
