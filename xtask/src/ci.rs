@@ -42,7 +42,7 @@ fn steps(report: &mut Report) -> Result<()> {
         let program = Program::new(&example.executable).inside(&environment);
         report.step(&format!("example {}", example.name), &repeat, || program.run())?;
     }
-    report.step("scenes", "tyndall check (every file under scenes/)", || {
+    report.step("scenes", "tyndall check (every scene under scenes/)", || {
         check_scenes(&built.program("tyndall")?.executable, &environment)
     })
 }
@@ -84,7 +84,10 @@ fn check_scenes(program: &str, environment: &Environment) -> Result<()> {
     Program::new(program).arguments(["check"]).arguments(scenes).inside(environment).run()
 }
 
-/// Every .ron file under the folder: scenes, and the materials and tables that they share.
+/// Folders of components that scenes share by `File("…")`: checked with the scenes that use them, and no scenes themselves.
+const SHARED: [&str; 2] = ["materials", "transfer_functions"];
+
+/// Every scene under the folder.
 fn scene_files(folder: &Path) -> Result<Vec<String>> {
     let mut files = Vec::new();
     let mut folders = vec![folder.to_owned()];
@@ -92,7 +95,9 @@ fn scene_files(folder: &Path) -> Result<Vec<String>> {
         for entry in fs::read_dir(&folder).with_context(|| folder.display().to_string())? {
             let path: PathBuf = entry?.path();
             if path.is_dir() {
-                folders.push(path);
+                if !SHARED.iter().any(|shared| path.ends_with(shared)) {
+                    folders.push(path);
+                }
             } else if path.extension().is_some_and(|extension| extension == "ron") {
                 files.push(path.to_str().context("a scene's name is no UTF-8")?.to_owned());
             }
@@ -107,10 +112,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn scenes_are_found_in_every_folder() {
+    fn scenes_are_found_in_every_folder_but_those_of_shared_components() {
         let root = tempfile::tempdir().unwrap();
-        fs::create_dir(root.path().join("volumes")).unwrap();
-        for name in ["b.ron", "volumes/a.ron", "notes.md"] {
+        for folder in ["volumes", "transfer_functions"] {
+            fs::create_dir(root.path().join(folder)).unwrap();
+        }
+        for name in ["b.ron", "volumes/a.ron", "notes.md", "transfer_functions/bone.ron"] {
             fs::write(root.path().join(name), "()").unwrap();
         }
         let found = scene_files(root.path()).unwrap();
