@@ -1,6 +1,9 @@
 //! What the machine that builds the tests has. Shared by the build scripts of several packages.
 
-use std::{env, path::PathBuf};
+use std::{
+    env,
+    path::{Path, PathBuf},
+};
 
 /// Sets `cfg(tyndall_gpu)` where a graphics adapter can be expected, so that tests which draw read *ignored* elsewhere.
 pub fn tell_gpu() {
@@ -20,10 +23,10 @@ pub fn tell_gpu() {
 fn has_vulkan_driver() -> bool {
     for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
         if let Some(list) = env::var_os(variable) {
-            return env::split_paths(&list).any(|path| path.is_file() || has_manifest(path));
+            return env::split_paths(&list).any(|path| path.is_file() || has_manifest(&path));
         }
     }
-    manifest_folders().into_iter().any(has_manifest)
+    manifest_folders().iter().any(|folder| has_manifest(folder))
 }
 
 fn manifest_folders() -> Vec<PathBuf> {
@@ -35,7 +38,7 @@ fn manifest_folders() -> Vec<PathBuf> {
     folders.filter(|folder| folder.is_dir()).collect()
 }
 
-fn has_manifest(folder: PathBuf) -> bool {
+fn has_manifest(folder: &Path) -> bool {
     let mut entries = folder.read_dir().into_iter().flatten().flatten();
     entries.any(|entry| entry.path().extension().is_some_and(|ending| ending == "json"))
 }

@@ -1,5 +1,7 @@
 //! What can be written in a scene, and what becomes of it.
 
+#![allow(clippy::unwrap_used, reason = "a helper that cannot do its work fails the test")]
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -63,10 +65,7 @@ fn errors(problems: &[Problem]) -> Vec<String> {
         .collect()
 }
 
-fn get<T: Component>(app: &App, name: &str) -> T
-where
-    T: Clone,
-{
+fn get<T: Component + Clone>(app: &App, name: &str) -> T {
     let entity = app.world().resource::<SceneEntities>().0[name];
     app.world().get::<T>(entity).cloned().unwrap_or_else(|| panic!("`{name}` lacks it"))
 }

@@ -45,7 +45,7 @@ fn encode(image: &Image) -> Result<Vec<u8>, image::ImageError> {
                     image.width,
                     image.height,
                     ExtendedColorType::Rgb8,
-                )?
+                )?;
         }
     }
     Ok(bytes.into_inner())

@@ -409,37 +409,40 @@ pub(super) const SETTINGS: [&str; 3] = ["millimetres_per_unit", "background", "s
 /// A scene is written by hand; what is larger is not one.
 const MAX_SCENE_BYTES: u64 = 64 << 20;
 
-fn read_text(path: &Path) -> Result<Arc<SourceFile>, Problem> {
+fn read_text(path: &Path) -> Result<Arc<SourceFile>, Box<Problem>> {
     use std::io::Read;
-    let unreadable = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::NotFound => {
-            let help = nearest_file(path)
-                .map_or("check the path and the folder it is relative to".into(), |near| {
-                    format!("did you mean `{near}`?")
-                });
-            Problem::error(format!("there is no file {}", path.display())).help(help)
-        }
-        _ => Problem::error(format!("cannot read {}: {error}", path.display())),
+    let unreadable = |error: std::io::Error| {
+        Box::new(match error.kind() {
+            std::io::ErrorKind::NotFound => {
+                let help = nearest_file(path)
+                    .map_or("check the path and the folder it is relative to".into(), |near| {
+                        format!("did you mean `{near}`?")
+                    });
+                Problem::error(format!("there is no file {}", path.display())).help(help)
+            }
+            _ => Problem::error(format!("cannot read {}: {error}", path.display())),
+        })
     };
     // Asked before opening: opening a pipe waits for its writer.
     if std::fs::metadata(path).map_err(unreadable)?.is_dir() {
-        return Err(Problem::error(format!("{} is a folder", path.display())).help("name a file in it"));
+        let problem = Problem::error(format!("{} is a folder", path.display()));
+        return Err(Box::new(problem.help("name a file in it")));
     }
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(unreadable)?;
     file.take(MAX_SCENE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > MAX_SCENE_BYTES {
-        return Err(Problem::error(format!(
+        return Err(Box::new(Problem::error(format!(
             "{} is longer than {MAX_SCENE_BYTES} bytes: is it a scene?",
             path.display()
-        )));
+        ))));
     }
     let text = String::from_utf8(bytes).map_err(|error| {
         let start = error.utf8_error().valid_up_to();
         let file = SourceFile::new(path, String::from_utf8_lossy(error.as_bytes()).as_ref());
         let bytes = start..start + char::REPLACEMENT_CHARACTER.len_utf8();
         let problem = Problem::error(format!("{} is not UTF-8 text", path.display()));
-        problem.label("not UTF-8").help("save it as UTF-8").at(Place { file, bytes })
+        Box::new(problem.label("not UTF-8").help("save it as UTF-8").at(Place { file, bytes }))
     })?;
     Ok(SourceFile::new(path, text))
 }

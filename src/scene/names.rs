@@ -24,7 +24,7 @@ pub(super) fn nearest_file(path: &Path) -> Option<String> {
 }
 
 /// "did you mean `x`?" where something is near, else the list of all that would do.
-pub(super) fn suggestion<'a>(name: &str, candidates: &[&'a str]) -> String {
+pub(super) fn suggestion(name: &str, candidates: &[&str]) -> String {
     match nearest(name, candidates.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
         None if candidates.is_empty() => "nothing is known here".into(),

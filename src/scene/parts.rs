@@ -95,7 +95,11 @@ impl<'a> Part<'a> {
     fn misfit(&self, error: &ron::error::SpannedError) -> Misfit {
         let base = self.bytes().start;
         let start = offset(self.text, error.span.start);
-        let token = tokens(&self.text[start..]).next().map(|token| start + token.start..start + token.end);
+        let token = tokens(&self.text[start..])
+            .next()
+            // The end is what was found, wherever the parser began to look.
+            .filter(|_| error.code != ron::Error::Eof)
+            .map(|token| start + token.start..start + token.end);
         let hides_brackets =
             matches!(error.code, ron::Error::ExpectedStringEnd | ron::Error::UnclosedBlockComment);
         if let Some(mut misfit) = self.bracket_misfit(token.as_ref()).filter(|_| !hides_brackets) {
