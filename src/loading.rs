@@ -3,7 +3,7 @@
 use crate::Stage;
 use crate::components::{Auto, Mesh, Placement, Volume};
 use crate::scene::{Problem, Problems};
-use crate::sources::{self, MeshData, MeshStatistics, RawLayout, SourceError, VolumeData};
+use crate::sources::{self, LayoutError, MeshData, MeshStatistics, RawLayout, SourceError, VolumeData};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
 use glam::{DVec3, Vec3};
@@ -13,7 +13,7 @@ pub(crate) struct LoadingPlugin;
 
 impl Plugin for LoadingPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(Update, (load_meshes, load_volumes).in_set(Stage::Load));
+        app.add_systems(Update, (unload, load_meshes, load_volumes).chain().in_set(Stage::Load));
     }
 }
 
@@ -73,6 +73,10 @@ fn load_meshes(
     mut problems: ResMut<Problems>,
 ) {
     for (entity, mesh) in &meshes {
+        if let Some(problem) = unsupported(mesh) {
+            problems.0.push(problem.on(entity, "Mesh.0"));
+            continue;
+        }
         match read_mesh(mesh) {
             Ok(data) => {
                 problems
@@ -81,9 +85,21 @@ fn load_meshes(
                 let bounds = data.bounds().unwrap_or_default();
                 commands.entity(entity).insert(LoadedMesh { data: Some(data), bounds });
             }
-            Err(error) => problems.0.push(Problem::error(error.to_string()).on(entity, "Mesh")),
+            // `Mesh.0` is the path of a file.
+            Err(error) => problems.0.push(Problem::error(error.to_string()).on(entity, "Mesh.0")),
         }
     }
+}
+
+/// What a mesh file that is there, but is no OBJ file by its name, is told.
+fn unsupported(mesh: &Mesh) -> Option<Problem> {
+    let Mesh::File(path) = mesh else { return None };
+    let ending = path.path().extension()?.to_string_lossy();
+    if ending.eq_ignore_ascii_case("obj") || !path.path().is_file() {
+        return None;
+    }
+    let message = format!("{}: expected an .obj file, found .{ending}", path.path().display());
+    Some(Problem::error(message).help("export the mesh as Wavefront OBJ"))
 }
 
 fn read_mesh(mesh: &Mesh) -> Result<MeshData, SourceError> {
@@ -114,8 +130,34 @@ fn load_volumes(
                 }
                 commands.entity(entity).insert(LoadedVolume { data, has_samples: true });
             }
-            Err(error) => problems.0.push(Problem::error(error.to_string()).on(entity, "Volume")),
+            Err(error) => {
+                problems.0.push(Problem::error(error.to_string()).on(entity, field_at_fault(&error)));
+            }
         }
+    }
+}
+
+/// The field of a [`Volume`] that an error is about.
+fn field_at_fault(error: &SourceError) -> &'static str {
+    match error {
+        SourceError::Layout { problem: LayoutError::Spacing { .. }, .. } => "Volume.spacing",
+        SourceError::Layout { problem: LayoutError::Skip { .. }, .. } => "Volume.skip_bytes",
+        SourceError::Layout { .. } | SourceError::Length { .. } => "Volume.size",
+        _ => "Volume.path",
+    }
+}
+
+/// What was read for a component goes with it.
+fn unload(
+    mut commands: Commands,
+    mut meshes: RemovedComponents<Mesh>,
+    mut volumes: RemovedComponents<Volume>,
+) {
+    for entity in meshes.read() {
+        commands.entity(entity).try_remove::<LoadedMesh>();
+    }
+    for entity in volumes.read() {
+        commands.entity(entity).try_remove::<LoadedVolume>();
     }
 }
 

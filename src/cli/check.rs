@@ -3,7 +3,7 @@
 use super::arguments::CheckArguments;
 use super::exit::{self, Failure};
 use crate::render;
-use crate::scene::{Problem, Severity};
+use crate::scene::{self, Problem, SceneDocument, Severity};
 use bevy_app::App;
 use bevy_ecs::prelude::*;
 use std::path::Path;
@@ -28,8 +28,10 @@ pub(super) fn run(app: &mut App, arguments: &CheckArguments) -> Result<(), Failu
 }
 
 /// Every problem of a scene, those of the files that its components name included.
-pub(super) fn check(app: &mut App, scene: &Path) -> Vec<Problem> {
-    let document = render::load_scene(app, scene, &[]);
+pub(super) fn check(app: &mut App, path: &Path) -> Vec<Problem> {
+    // An earlier scene may hold an equal component with the same mistake, which would not be read, nor reported, again.
+    scene::reconcile(app.world_mut(), &SceneDocument::default());
+    let document = render::load_scene(app, path, &[]);
     if !document.has_errors() {
         app.update();
     }

@@ -41,10 +41,7 @@ fn cloud() -> Vec<u8> {
 }
 
 fn plugin(folder: &Path, checkout: Option<&Path>) -> Result<Files, Failure> {
-    let name = folder
-        .file_name()
-        .map(|name| name.to_string_lossy().replace([' ', '.'], "_"))
-        .unwrap_or_else(|| "my_plugin".into());
+    let name = crate_name(folder);
     let tyndall = match checkout {
         Some(checkout) => {
             let absolute = checkout.canonicalize();
@@ -60,4 +57,15 @@ fn plugin(folder: &Path, checkout: Option<&Path>) -> Result<Files, Failure> {
         ("src/main.rs", include_bytes!("templates/plugin.rs").to_vec()),
         ("scene.ron", include_bytes!("templates/plugin_scene.ron").to_vec()),
     ])
+}
+
+/// A name that Cargo takes, as near to the folder's as can be.
+fn crate_name(folder: &Path) -> String {
+    let folder = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let fits = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+    let name: String = folder.chars().map(|c| if fits(c) { c } else { '_' }).collect();
+    match name.chars().next() {
+        Some(first) if first.is_ascii_alphabetic() => name,
+        _ => format!("plugin_{}", name.trim_matches(['_', '-'])).trim_end_matches('_').into(),
+    }
 }

@@ -45,7 +45,7 @@ fn encode(image: &Image) -> Result<Vec<u8>, image::ImageError> {
                     image.width,
                     image.height,
                     ExtendedColorType::Rgb8,
-                )?
+                )?;
         }
     }
     Ok(bytes.into_inner())
@@ -73,6 +73,8 @@ fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
         // A device or a pipe is written to, not replaced; a folder gives its own error.
         return std::fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
     }
+    // A link stays a link: what it leads to is replaced.
+    let path = &path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let file = temporary(&folder_of(path))?;
     let mut writer = BufWriter::new(&file);
     writer.write_all(bytes)?;

@@ -7,7 +7,7 @@ use crate::components::ViewCamera;
 use crate::gpu::{Gpu, GpuOptions};
 use crate::render::{self, RenderError};
 use crate::report::Report;
-use crate::scene::{Problem, Severity, nearest};
+use crate::scene::{Problem, SceneDocument, Severity, nearest};
 use crate::{Picture, SceneTime};
 use bevy_app::App;
 use bevy_ecs::prelude::*;
@@ -16,16 +16,19 @@ use std::time::Instant;
 
 pub(super) fn run(app: &mut App, arguments: &RenderArguments, started: Instant) -> Result<(), Failure> {
     output::check_folder(&arguments.output)?;
+    arguments.stats.as_deref().map_or(Ok(()), output::check_folder)?;
     app.world_mut().resource_mut::<Report>().spent("start", started);
     // The driver takes its time to wake up; meanwhile the scene is read.
     let options = GpuOptions { portable: arguments.portable };
     let gpu = std::thread::spawn(move || (pollster::block_on(Gpu::new(&options)), Instant::now()));
     let document = render::load_scene(app, &arguments.scene, &arguments.overrides);
-    if document.has_errors() {
-        exit::print(&document.problems);
-        return Err(Failure::Input);
+    let fine =
+        check_document(&document).and_then(|()| check_camera(app.world_mut(), arguments.camera.as_deref()));
+    if let Err(failure) = fine {
+        // Drivers do not take it well when the program ends while they wake up.
+        let _ = gpu.join();
+        return Err(failure);
     }
-    check_camera(app.world_mut(), arguments.camera.as_deref())?;
     let waiting = Instant::now();
     let (gpu, _) = gpu
         .join()
@@ -62,6 +65,20 @@ pub(super) fn run(app: &mut App, arguments: &RenderArguments, started: Instant) 
         write_stats(app.world(), path, started)?;
     }
     Ok(())
+}
+
+fn check_document(document: &SceneDocument) -> Result<(), Failure> {
+    if !document.has_errors() {
+        return Ok(());
+    }
+    exit::print(&document.problems);
+    let from_command_line = |problem: &Problem| {
+        problem.place.as_ref().is_some_and(|place| place.file.path() == Path::new("--set"))
+    };
+    if document.problems.iter().any(from_command_line) {
+        return Err(Failure::Usage("a `--set` names what the scene does not have; nothing was drawn".into()));
+    }
+    Err(Failure::Input)
 }
 
 fn notes(problems: &[Problem]) -> Vec<Problem> {

@@ -51,13 +51,26 @@ impl Range {
 
 impl std::fmt::Display for Range {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (min, max) = (short(self.min), short(self.max));
         match (self.above_min, self.max == f64::MAX) {
-            (true, true) => write!(f, "above {}", self.min),
-            (false, true) => write!(f, "at least {}", self.min),
-            (true, false) => write!(f, "above {} and at most {}", self.min, self.max),
-            (false, false) => write!(f, "from {} to {}", self.min, self.max),
+            (true, true) => write!(f, "above {min}"),
+            (false, true) => write!(f, "at least {min}"),
+            (true, false) => write!(f, "above {min} and at most {max}"),
+            (false, false) => write!(f, "from {min} to {max}"),
         }
     }
+}
+
+/// A number with its digits, or with an exponent where that is much shorter.
+fn short(number: f64) -> String {
+    let (plain, exponent) = (number.to_string(), format!("{number:e}"));
+    if plain.len() > exponent.len() + 4 { exponent } else { plain }
+}
+
+/// A vector as it is written in RON.
+pub(crate) fn in_ron(numbers: &[f32]) -> String {
+    let numbers: Vec<_> = numbers.iter().map(f32::to_string).collect();
+    format!("({})", numbers.join(", "))
 }
 
 /// The unit of a field, for people: `"mm"`, `"degrees"`.

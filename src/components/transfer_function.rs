@@ -1,4 +1,7 @@
-use super::{Auto, Range, Unit, Validate, attributes::ReflectValidate};
+use super::{
+    Auto, Range, Unit, Validate,
+    attributes::{ReflectValidate, in_ron},
+};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::{Vec2, Vec3};
@@ -76,8 +79,10 @@ impl Validate for TransferFunction {
         if let Auto::Value(domain) = self.domain
             && domain.x >= domain.y
         {
-            problems
-                .push(("domain", format!("a domain goes from a lower to a higher value, found {domain}")));
+            problems.push((
+                "domain",
+                format!("a domain goes from a lower to a higher value, found {}", in_ron(&domain.to_array())),
+            ));
         }
         if let Some(pair) = self.points.windows(2).find(|pair| pair[0].0 > pair[1].0) {
             problems.push((

@@ -1,6 +1,6 @@
 //! Where an entity is: as written, as moved by animation, and the product of the two.
 
-use super::attributes::{ReflectValidate, Untagged, Validate};
+use super::attributes::{ReflectValidate, Untagged, Validate, in_ron};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::{DAffine3, DQuat, EulerRot, Vec3};
@@ -51,7 +51,11 @@ impl Validate for Transform {
         if scale.cmpne(Vec3::ZERO).all() {
             return Vec::new();
         }
-        vec![("scale", format!("a scale must not be 0, which would leave nothing to see; found {scale}"))]
+        let found = match self.scale {
+            Scale::Uniform(factor) => factor.to_string(),
+            Scale::PerAxis(factors) => in_ron(&factors.to_array()),
+        };
+        vec![("scale", format!("a scale must not be 0, which would leave nothing to see; found {found}"))]
     }
 }
 

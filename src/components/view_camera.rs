@@ -1,4 +1,7 @@
-use super::{Range, Unit, Validate, attributes::ReflectValidate};
+use super::{
+    Range, Unit, Validate,
+    attributes::{ReflectValidate, in_ron},
+};
 use crate::components::Placement;
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -63,11 +66,19 @@ impl Validate for ViewCamera {
         if view.length_squared() == 0.0 {
             return vec![(
                 "target",
-                format!("the camera must look somewhere: `target` and `eye` are both {}", self.eye),
+                format!(
+                    "the camera must look somewhere: `target` and `eye` are both {}",
+                    in_ron(&self.eye.to_array())
+                ),
             )];
         }
         if view.cross(up).length() < 1e-6 {
-            return vec![("up", format!("`up` must point across the view, found {} along it", self.up))];
+            let up = in_ron(&self.up.to_array());
+            let message = match self.up {
+                Vec3::ZERO => format!("`up` must point somewhere, found {up}"),
+                _ => format!("`up` must point across the view, found {up} along it"),
+            };
+            return vec![("up", message)];
         }
         Vec::new()
     }

@@ -1,7 +1,8 @@
 //! A scene as its files say it: every value with its place, nothing in the world yet.
 
+use super::advice::advice;
 use super::edit;
-use super::names::suggestion;
+use super::names::{nearest_file, suggestion};
 use super::parts::{Named, Part};
 use super::problem::{Place, Problem, Severity, SourceFile};
 use super::reader::Reader;
@@ -9,7 +10,7 @@ use crate::components::{AssetPath, SceneSettings};
 use bevy_ecs::reflect::ReflectComponent;
 use bevy_reflect::{Reflect, TypeInfo, TypeRegistration, TypeRegistry, structs::Struct};
 use std::any::TypeId;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -88,6 +89,8 @@ pub struct SceneDocument {
     pub problems: Vec<Problem>,
     /// Where the head's fields stand.
     head: HashMap<String, Place>,
+    /// Where each entity is in the list.
+    index: HashMap<String, usize>,
 }
 
 impl SceneDocument {
@@ -107,6 +110,9 @@ impl SceneDocument {
                 Err(problem) => document.problems.push(*problem),
             }
         }
+        if !document.has_errors() {
+            document.problems.extend(advice(&document));
+        }
         document
     }
 
@@ -117,7 +123,7 @@ impl SceneDocument {
 
     /// The entity of this name.
     pub fn entity(&self, name: &str) -> Option<&SceneEntity> {
-        self.entities.iter().find(|entity| entity.name == name)
+        self.index.get(name).map(|index| &self.entities[*index])
     }
 
     /// Where a field of the head stands; `""` is the head itself.
@@ -126,8 +132,15 @@ impl SceneDocument {
     }
 
     fn load_with(path: &Path, registry: &TypeRegistry, texts: &HashMap<PathBuf, String>) -> Self {
-        let mut loader =
-            Loader { registry, texts, document: Self::default(), settings: SceneSettings::default() };
+        let mut loader = Loader {
+            registry,
+            texts,
+            document: Self::default(),
+            settings: SceneSettings::default(),
+            read: HashMap::new(),
+            included: HashSet::new(),
+        };
+        loader.included.insert(identity(path));
         loader.file(path, None, true);
         let mut document = loader.document;
         document.settings = loader.settings;
@@ -141,6 +154,10 @@ struct Loader<'a> {
     texts: &'a HashMap<PathBuf, String>,
     document: SceneDocument,
     settings: SceneSettings,
+    /// Every file tried so far, and its text if it has one: what several entities share is read, and reported, once.
+    read: HashMap<PathBuf, Option<Arc<SourceFile>>>,
+    /// The scene and what it includes, by [`identity`].
+    included: HashSet<PathBuf>,
 }
 
 impl<'a> Loader<'a> {
@@ -148,19 +165,39 @@ impl<'a> Loader<'a> {
     fn file(&mut self, path: &Path, named_at: Option<&Place>, main: bool) {
         let Some(file) = self.text(path, named_at) else { return };
         let mut reader = Reader::new(self.registry, file.clone());
-        let whole = Part::whole(file.text());
-        match whole.fields() {
-            Ok(fields) => {
-                if main {
-                    self.document.head.insert(String::new(), reader.place(&whole));
-                }
-                for Named { name, value } in fields {
-                    self.head_field(&mut reader, &name, &value, main);
-                }
-            }
-            Err(misfit) => reader.report_misfit(misfit),
+        let whole = Part::whole(file.text()).trimmed();
+        if whole.text.is_empty() {
+            let problem = Problem::error("the file is empty").label("nothing but white space and comments");
+            reader.report(&whole, problem.help("a scene is written `( entities: { … } )`"));
+        } else {
+            self.head(&mut reader, &Part::whole(file.text()), &whole, main);
         }
         self.document.problems.append(&mut reader.problems);
+    }
+
+    fn head(&mut self, reader: &mut Reader, file: &Part, whole: &Part, main: bool) {
+        // Parsed with what stands around it, so that nothing stands there unnoticed.
+        let fields = match file.fields() {
+            Ok(fields) => fields,
+            Err(misfit) => return reader.report_shape(whole, misfit, "a scene `( entities: { … } )`"),
+        };
+        if main {
+            self.document.head.insert(String::new(), reader.place(whole));
+        }
+        let mut seen: Vec<(&str, Place)> = Vec::new();
+        for Named { name, value } in &fields {
+            if let Some((_, first)) = seen.iter().find(|(seen, _)| *seen == name.text) {
+                let other = Some((first.clone(), "first written here".into()));
+                let problem = Problem {
+                    other,
+                    ..Problem::error(format!("`{}` is written twice", name.text)).label("again here")
+                };
+                reader.report(name, problem);
+                continue;
+            }
+            seen.push((name.text, reader.place(name)));
+            self.head_field(reader, name, value, main);
+        }
     }
 
     fn head_field(&mut self, reader: &mut Reader, name: &Part, value: &Part, main: bool) {
@@ -202,14 +239,14 @@ impl<'a> Loader<'a> {
         let Some(registration) = self.registry.get(TypeId::of::<AssetPath>()) else { return };
         let elements = match part.elements() {
             Ok(elements) => elements,
-            Err(misfit) => return reader.report_misfit(misfit),
+            Err(misfit) => return reader.report_shape(part, misfit, "a list of paths `[\"…\"]`"),
         };
         for element in elements {
             let Some(value) = reader.value_at("include", &element, registration, None) else { continue };
             let Some(path) = value.try_downcast_ref::<AssetPath>().map(|path| path.path().to_owned()) else {
                 continue;
             };
-            if !self.document.files.contains(&path) {
+            if self.included.insert(identity(&path)) {
                 self.file(&path, Some(&reader.place(&element)), false);
             }
         }
@@ -218,15 +255,19 @@ impl<'a> Loader<'a> {
     fn entities(&mut self, reader: &mut Reader, part: &Part) {
         let entries = match part.entries() {
             Ok(entries) => entries,
-            Err(misfit) => return reader.report_misfit(misfit),
+            Err(misfit) => {
+                return reader.report_shape(part, misfit, "entities by name `{ \"name\": ( … ), … }`");
+            }
         };
         self.document.head.entry("entities".into()).or_insert_with(|| reader.place(part));
         for Named { name, value } in entries {
             let place = reader.place(&name);
             let name = match name.read(std::marker::PhantomData::<String>) {
                 Ok(text) => text,
-                Err(misfit) => {
-                    reader.report_misfit(misfit);
+                Err(_) => {
+                    let message = format!("expected a name in quotes, found `{}`", name.text);
+                    let problem = Problem::error(message).help(format!("write `\"{}\"`", name.text));
+                    reader.report(&name, problem);
                     continue;
                 }
             };
@@ -242,6 +283,7 @@ impl<'a> Loader<'a> {
                 continue;
             }
             let entity = self.entity(reader, name, place, &value);
+            self.document.index.insert(entity.name.clone(), self.document.entities.len());
             self.document.entities.push(entity);
         }
     }
@@ -251,20 +293,22 @@ impl<'a> Loader<'a> {
         let fields = match part.fields() {
             Ok(fields) => fields,
             Err(misfit) => {
-                reader.report_misfit(misfit);
+                reader.report_shape(part, misfit, "components `( Name: value, … )`");
                 return entity;
             }
         };
         entity.places.insert(String::new(), reader.place(part));
+        let mut names: HashMap<&str, Place> = HashMap::new();
         for Named { name, value } in fields {
             let Some(registration) = self.component_type(reader, &name) else { continue };
             if entity.components.iter().any(|component| component.type_id == registration.type_id()) {
-                reader.report(
-                    &name,
-                    Problem::error(format!("`{}` is written twice on `{}`", name.text, entity.name)),
-                );
+                let other = names.get(name.text).map(|first| (first.clone(), "first written here".into()));
+                let message = format!("`{}` is written twice on `{}`", name.text, entity.name);
+                let problem = Problem { other, ..Problem::error(message).label("again here") };
+                reader.report(&name, problem);
                 continue;
             }
+            names.insert(name.text, reader.place(&name));
             let value = self.component(reader, name.text, &value, registration);
             entity.places.extend(reader.places.drain(..));
             if let Some(value) = value {
@@ -295,8 +339,18 @@ impl<'a> Loader<'a> {
         let path = path.try_downcast_ref::<AssetPath>()?.path().to_owned();
         let file = self.text(&path, Some(&reader.place(&path_part)))?;
         let mut own = Reader::new(self.registry, file.clone());
-        let value = own.complete(&Part::whole(file.text()).trimmed(), registration, name);
+        let whole = Part::whole(file.text()).trimmed();
+        if whole.text.is_empty() {
+            let problem = Problem::error("the file is empty").label("nothing but white space and comments");
+            own.report(&whole, problem.help(format!("write what would stand behind `{name}:` in a scene")));
+        }
+        let value = if whole.text.is_empty() { None } else { own.complete(&whole, registration, name) };
         reader.places.append(&mut own.places);
+        // What several entities share is reported once.
+        own.problems.retain(|problem| {
+            let known = self.document.problems.iter().chain(&reader.problems);
+            !known.into_iter().any(|other| other.is_same(problem))
+        });
         reader.problems.append(&mut own.problems);
         value
     }
@@ -325,17 +379,28 @@ impl<'a> Loader<'a> {
     }
 
     fn text(&mut self, path: &Path, named_at: Option<&Place>) -> Option<Arc<SourceFile>> {
-        self.document.files.push(path.to_owned());
-        if let Some(text) = self.texts.get(path) {
-            return Some(SourceFile::new(path, text.as_str()));
+        if let Some(file) = self.read.get(path) {
+            return file.clone();
         }
-        let problem = match read_text(path) {
-            Ok(text) => return Some(SourceFile::new(path, text)),
-            Err(problem) => problem,
+        self.document.files.push(path.to_owned());
+        let read = match self.texts.get(path) {
+            Some(text) => Ok(SourceFile::new(path, text.as_str())),
+            None => read_text(path),
         };
-        self.document.problems.push(problem.at_maybe(named_at.cloned()));
-        None
+        let file = read
+            .map_err(|problem| {
+                let place = problem.place.clone().or(named_at.cloned());
+                self.document.problems.push(problem.at_maybe(place));
+            })
+            .ok();
+        self.read.insert(path.to_owned(), file.clone());
+        file
     }
+}
+
+/// The same for every way to write the path of a file.
+fn identity(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
 /// The fields of [`SceneSettings`].
@@ -344,22 +409,40 @@ pub(super) const SETTINGS: [&str; 3] = ["millimetres_per_unit", "background", "s
 /// A scene is written by hand; what is larger is not one.
 const MAX_SCENE_BYTES: u64 = 64 << 20;
 
-fn read_text(path: &Path) -> Result<String, Problem> {
+fn read_text(path: &Path) -> Result<Arc<SourceFile>, Box<Problem>> {
     use std::io::Read;
-    let unreadable =
-        |error: std::io::Error| Problem::error(format!("cannot read {}: {error}", path.display()));
+    let unreadable = |error: std::io::Error| {
+        Box::new(match error.kind() {
+            std::io::ErrorKind::NotFound => {
+                let help = nearest_file(path)
+                    .map_or("check the path and the folder it is relative to".into(), |near| {
+                        format!("did you mean `{near}`?")
+                    });
+                Problem::error(format!("there is no file {}", path.display())).help(help)
+            }
+            _ => Problem::error(format!("cannot read {}: {error}", path.display())),
+        })
+    };
+    // Asked before opening: opening a pipe waits for its writer.
+    if std::fs::metadata(path).map_err(unreadable)?.is_dir() {
+        let problem = Problem::error(format!("{} is a folder", path.display()));
+        return Err(Box::new(problem.help("name a file in it")));
+    }
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(unreadable)?;
     file.take(MAX_SCENE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > MAX_SCENE_BYTES {
-        return Err(Problem::error(format!(
+        return Err(Box::new(Problem::error(format!(
             "{} is longer than {MAX_SCENE_BYTES} bytes: is it a scene?",
             path.display()
-        )));
+        ))));
     }
-    String::from_utf8(bytes).map_err(|error| {
-        let place = error.utf8_error().valid_up_to();
-        Problem::error(format!("{} is not UTF-8 text (byte {place})", path.display()))
-            .help("save it as UTF-8")
-    })
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let start = error.utf8_error().valid_up_to();
+        let file = SourceFile::new(path, String::from_utf8_lossy(error.as_bytes()).as_ref());
+        let bytes = start..start + char::REPLACEMENT_CHARACTER.len_utf8();
+        let problem = Problem::error(format!("{} is not UTF-8 text", path.display()));
+        Box::new(problem.label("not UTF-8").help("save it as UTF-8").at(Place { file, bytes }))
+    })?;
+    Ok(SourceFile::new(path, text))
 }

@@ -1,10 +1,12 @@
 //! Changing one value in the text of a scene, leaving the rest of the text as it is.
 
-use super::document::{Override, SceneDocument};
+use super::document::{Override, SETTINGS, SceneDocument};
 use super::names::nearest;
 use super::parts::{Part, Payload, Shape};
 use super::problem::{Place, Problem, SourceFile};
-use bevy_reflect::TypeRegistry;
+use super::tokens::tokens;
+use bevy_ecs::reflect::ReflectComponent;
+use bevy_reflect::{TypeInfo, TypeRegistry};
 use std::path::PathBuf;
 
 /// The path in `File("…")`, where the part is written so.
@@ -36,60 +38,72 @@ pub(super) fn apply(
         return head(document, change).ok_or_else(|| {
             let first = change.path.split('.').next().unwrap_or_default();
             let names = document.entities.iter().map(|entity| entity.name.as_str());
-            let help = nearest(first, names).map_or("write entity.Component.field=VALUE".into(), |near| {
+            let is_head = first.len() == change.path.len();
+            let near = nearest(first, names.chain(SETTINGS.into_iter().filter(|_| is_head)));
+            let help = near.map_or("write entity.Component.field=VALUE".into(), |near| {
                 format!("did you mean `{near}`?")
             });
-            fail(format!("the scene has no entity `{first}`"), help)
+            let what = if is_head { "setting" } else { "entity" };
+            fail(format!("the scene has no {what} `{first}`"), help)
         });
     };
     let path = &change.path[entity.name.len() + 1..];
     let component = path.split(['.', '[']).next().unwrap_or_default();
-    if registry.get_with_short_type_path(component).is_none() {
-        return Err(fail(
-            format!("there is no component `{component}`"),
-            format!("`{}` has: {}", entity.name, names(entity)),
-        ));
-    }
+    let Some(registration) = registry.get_with_short_type_path(component) else {
+        let written: Vec<&str> = entity.components.iter().map(|component| component.name.as_str()).collect();
+        let help = nearest(component, registered(registry)).map_or_else(
+            || format!("`{}` has: {}", entity.name, written.join(", ")),
+            |near| format!("did you mean `{}.{near}{}`?", entity.name, &path[component.len()..]),
+        );
+        return Err(fail(format!("there is no component `{component}`"), help));
+    };
     let place = entity.place_of(path);
     if entity.is_written(path) {
         return Ok(splice(&place, &change.value));
     }
-    // Not written yet: added as the first field of what is around it, which must be written with parentheses.
+    // Not written yet: added as the first field of what is around it.
     let (around, field) = path.rsplit_once('.').unwrap_or(("", path));
+    if around == component
+        && !entity.is_written(around)
+        && matches!(registration.type_info(), TypeInfo::Struct(_))
+    {
+        return Ok(insert(&entity.place_of(""), component, &format!("({field}: {})", change.value)));
+    }
     if !entity.is_written(around) {
         return Err(fail(
             format!("`{around}` is not written in the scene, so its `{field}` cannot be set"),
             format!("set the whole: {}.{around}=(…)", entity.name),
         ));
     }
-    let place = entity.place_of(around);
+    Ok(insert(&entity.place_of(around), field, &change.value))
+}
+
+/// Adds a field in front of the others of what stands at `place`, which may be a bare name without parentheses.
+fn insert(place: &Place, field: &str, value: &str) -> (PathBuf, String) {
     let text = &place.file.text()[place.bytes.clone()];
-    match text.find('(') {
-        Some(open) => {
-            let empty = text[open + 1..].trim_start().starts_with(')');
-            let after =
-                Place { bytes: place.bytes.start + open + 1..place.bytes.start + open + 1, ..place.clone() };
-            Ok(splice(&after, &format!("{field}: {}{}", change.value, if empty { "" } else { ", " })))
-        }
-        None => Ok(splice(&place, &format!("{text}({field}: {})", change.value))),
-    }
+    let Some(open) = tokens(text).find(|token| text[token.clone()].starts_with('(')) else {
+        return splice(place, &format!("{text}({field}: {value})"));
+    };
+    let inside = place.bytes.start + open.end;
+    let is_empty =
+        tokens(&text[open.end..]).next().is_some_and(|token| text[open.end..][token].starts_with(')'));
+    let comma = if is_empty { "" } else { ", " };
+    splice(&Place { bytes: inside..inside, ..place.clone() }, &format!("{field}: {value}{comma}"))
 }
 
 fn head(document: &SceneDocument, change: &Override) -> Option<(PathBuf, String)> {
     let field = change.path.as_str();
-    if let Some(place) = document.head_place(field) {
+    if let Some(place) = document.head_place(field).filter(|_| !field.is_empty()) {
         return Some(splice(place, &change.value));
     }
-    let whole = document.head_place("").filter(|_| super::document::SETTINGS.contains(&field))?;
-    let open = whole.file.text().find('(')?;
-    Some(splice(
-        &Place { bytes: open + 1..open + 1, ..whole.clone() },
-        &format!("{field}: {}, ", change.value),
-    ))
+    let whole = document.head_place("").filter(|_| SETTINGS.contains(&field))?;
+    Some(insert(whole, field, &change.value))
 }
 
-fn names(entity: &super::SceneEntity) -> String {
-    entity.components.iter().map(|component| component.name.as_str()).collect::<Vec<_>>().join(", ")
+/// The names of all components.
+fn registered(registry: &TypeRegistry) -> impl Iterator<Item = &'static str> {
+    let components = registry.iter().filter(|registration| registration.data::<ReflectComponent>().is_some());
+    components.map(|registration| registration.type_info().type_path_table().short_path())
 }
 
 fn splice(place: &Place, value: &str) -> (PathBuf, String) {

@@ -7,6 +7,7 @@
 //! The reader knows no component type: whatever is registered for reflection can be written. It reports every problem of a scene
 //! at once ([`Problem`]), each with its place in the text.
 
+mod advice;
 mod document;
 mod edit;
 mod names;
@@ -14,6 +15,7 @@ mod parts;
 mod problem;
 mod reader;
 mod reconcile;
+mod tokens;
 
 pub use document::{Override, SceneComponent, SceneDocument, SceneEntity};
 pub use names::nearest;

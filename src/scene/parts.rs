@@ -4,6 +4,7 @@
 //! the place of a part is the difference of two addresses. Each part can then be read as the type that its place in the scene asks
 //! for, and a mistake in one of them does not hide those in the others.
 
+use super::tokens::{tokens, unbalanced, without_comments_around};
 use ron::value::RawValue;
 use serde::de::{
     Deserialize, DeserializeSeed, Deserializer, EnumAccess, MapAccess, SeqAccess, VariantAccess, Visitor,
@@ -46,6 +47,11 @@ pub(super) enum Shape {
 pub(super) struct Misfit {
     pub bytes: Range<usize>,
     pub message: String,
+    pub help: Option<String>,
+    /// A second place that matters, and what it is.
+    pub other: Option<(Range<usize>, String)>,
+    /// Whether a bracket is at fault, whatever shape was asked for.
+    pub is_bracket: bool,
 }
 
 impl<'a> Part<'a> {
@@ -67,7 +73,7 @@ impl<'a> Part<'a> {
 
     /// Part of the same file.
     fn sub(&self, text: &'a str) -> Self {
-        Self { whole: self.whole, text: strip_comments(text) }
+        Self { whole: self.whole, text: without_comments_around(text) }
     }
 
     /// Reads the part with a seed of serde's.
@@ -85,14 +91,74 @@ impl<'a> Part<'a> {
         value.map_err(|error| self.misfit(&error))
     }
 
+    /// What ron says about the text, in words for whoever wrote it.
     fn misfit(&self, error: &ron::error::SpannedError) -> Misfit {
-        let start = offset(self.text, error.span.start);
-        let end = offset(self.text, error.span.end).clamp(start, self.text.len());
         let base = self.bytes().start;
-        Misfit {
-            bytes: base + start..base + end.max((start + 1).min(self.text.len())),
-            message: error.code.to_string(),
+        let start = offset(self.text, error.span.start);
+        let token = tokens(&self.text[start..])
+            .next()
+            // The end is what was found, wherever the parser began to look.
+            .filter(|_| error.code != ron::Error::Eof)
+            .map(|token| start + token.start..start + token.end);
+        let hides_brackets =
+            matches!(error.code, ron::Error::ExpectedStringEnd | ron::Error::UnclosedBlockComment);
+        if let Some(mut misfit) = self.bracket_misfit(token.as_ref()).filter(|_| !hides_brackets) {
+            misfit.bytes = base + misfit.bytes.start..base + misfit.bytes.end;
+            misfit.other = misfit.other.map(|(open, label)| (base + open.start..base + open.end, label));
+            return misfit;
         }
+        let bytes = if hides_brackets { start..self.text.len() } else { token.unwrap_or(start..start) };
+        let line = self.text[bytes.clone()].lines().next().unwrap_or_default().len();
+        let found = match &self.text[bytes.start..bytes.start + line] {
+            "" => "nothing more".into(),
+            text => format!("`{text}`"),
+        };
+        let (message, help) = explain(&error.code, &found);
+        let last = self.text[..start].char_indices().last().map_or(0, |(at, _)| at);
+        let bytes = if line == 0 { last..start } else { bytes.start..bytes.start + line };
+        let bytes = base + bytes.start..base + bytes.end;
+        Misfit { bytes, message, help: help.map(str::to_owned), other: None, is_bracket: false }
+    }
+
+    /// A bracket at fault, if that is what stopped the parser at `token`.
+    fn bracket_misfit(&self, token: Option<&Range<usize>>) -> Option<Misfit> {
+        let fault = unbalanced(self.text)?;
+        if token.is_some_and(|token| token.start < fault.at) {
+            return None;
+        }
+        let bracket = |at: usize| &self.text[at..at + 1];
+        let closing = |at: usize| match bracket(at) {
+            "(" => ")",
+            "[" => "]",
+            _ => "}",
+        };
+        let no_other = |bytes, message: String, help: String| Misfit {
+            bytes,
+            message,
+            help: Some(help),
+            other: None,
+            is_bracket: true,
+        };
+        Some(match fault.open {
+            None => no_other(
+                fault.at..fault.at + 1,
+                format!("`{}` closes nothing", bracket(fault.at)),
+                "take it away, or open a bracket before it".into(),
+            ),
+            Some(open) if fault.at == self.text.len() => no_other(
+                open..open + 1,
+                format!("`{}` is never closed", bracket(open)),
+                format!("write `{}` where what it opens ends", closing(open)),
+            ),
+            Some(open) => Misfit {
+                other: Some((open..open + 1, "opened here".into())),
+                ..no_other(
+                    fault.at..fault.at + 1,
+                    format!("expected `{}`, found `{}`", closing(open), bracket(fault.at)),
+                    format!("close the `{}` before it", bracket(open)),
+                )
+            },
+        })
     }
 
     /// The parts of `(name: value, …)`.
@@ -150,49 +216,45 @@ impl<'a> Part<'a> {
     }
 }
 
-/// Raw values keep the comments in front of and behind them; a place should not.
-fn strip_comments(text: &str) -> &str {
-    let mut text = text.trim();
-    loop {
-        if let Some(rest) = text.strip_prefix("//") {
-            text = rest.split_once('\n').map_or("", |(_, rest)| rest).trim_start();
-        } else if text.starts_with("/*") {
-            text = text[block_comment_length(text)..].trim_start();
-        } else {
-            return strip_comments_behind(text);
+/// What is wrong, and how to mend it.
+fn explain(error: &ron::Error, found: &str) -> (String, Option<&'static str>) {
+    use ron::Error;
+    let expected = |what: &str| format!("expected {what}, found {found}");
+    match error {
+        Error::ExpectedComma => (expected("`,`"), Some("a comma separates fields, entries and values")),
+        Error::ExpectedMapColon => {
+            (expected("`:` and a value"), Some("a name is followed by its value, `name: value`"))
         }
+        Error::ExpectedIdentifier => {
+            (expected("the name of a field"), Some("fields are written `name: value`"))
+        }
+        Error::ExpectedString => (expected("text in quotes"), None),
+        Error::ExpectedStringEnd => {
+            ("the text that begins here never ends".into(), Some("close it with `\"`"))
+        }
+        Error::UnclosedBlockComment => {
+            ("the comment that begins here never ends".into(), Some("close it with `*/`"))
+        }
+        Error::ExpectedStructLike | Error::ExpectedNamedStructLike(_) => (expected("`(`"), None),
+        Error::ExpectedStructLikeEnd | Error::ExpectedOptionEnd => (expected("`)`"), None),
+        Error::ExpectedArray => (expected("`[`"), None),
+        Error::ExpectedArrayEnd => (expected("`]`"), None),
+        Error::ExpectedMap => (expected("`{`"), None),
+        Error::ExpectedMapEnd => (expected("`}`"), None),
+        Error::ExpectedOption => (expected("`Some(value)` or `None`"), None),
+        Error::TrailingCharacters => (expected("nothing more"), None),
+        Error::UnexpectedChar(_) | Error::Eof => (expected("a value"), None),
+        Error::ExceededRecursionLimit => (
+            "brackets are nested more than 128 deep".into(),
+            Some("a scene needs fewer than ten; is one opened too often?"),
+        ),
+        other => (sentence(&other.to_string()), None),
     }
 }
 
-/// Block comments nest in RON.
-fn block_comment_length(text: &str) -> usize {
-    let (mut depth, mut at) = (0usize, 0);
-    while at < text.len() {
-        let rest = &text.as_bytes()[at..];
-        if rest.starts_with(b"/*") {
-            depth += 1;
-            at += 2;
-        } else if rest.starts_with(b"*/") {
-            depth -= 1;
-            at += 2;
-            if depth == 0 {
-                return at;
-            }
-        } else {
-            at += 1;
-        }
-    }
-    text.len()
-}
-
-/// Cuts comments off the end: where the value alone reads as RON, the rest was comment.
-fn strip_comments_behind(text: &str) -> &str {
-    let last_line = text.rsplit('\n').next().unwrap_or(text);
-    if !last_line.contains("//") && !text.ends_with("*/") {
-        return text;
-    }
-    let ends = text.match_indices('/').map(|(at, _)| text[..at].trim_end());
-    ends.filter(|end| !end.is_empty()).find(|end| RawValue::from_ron(end).is_ok()).unwrap_or(text)
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map(|first| first.to_lowercase().chain(letters).collect()).unwrap_or_default()
 }
 
 /// Byte offset of a position that counts lines and characters from 1.

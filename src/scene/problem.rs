@@ -132,6 +132,15 @@ impl Problem {
         self
     }
 
+    /// Whether it says the same about the same place.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        let same_place = match (&self.place, &other.place) {
+            (Some(a), Some(b)) => Arc::ptr_eq(&a.file, &b.file) && a.bytes == b.bytes,
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        same_place && self.message == other.message
+    }
+
     /// The problem with its text around it, as a person reads it in a terminal.
     pub fn render(&self, handler: &miette::GraphicalReportHandler) -> String {
         let mut text = String::new();

@@ -48,8 +48,20 @@ impl<'r> Reader<'r> {
     }
 
     pub fn report_misfit(&mut self, misfit: Misfit) {
-        let place = Place { file: self.file.clone(), bytes: misfit.bytes };
-        self.problems.push(Problem::error(sentence(&misfit.message)).at(place));
+        let place = |bytes| Place { file: self.file.clone(), bytes };
+        let other = misfit.other.map(|(bytes, label)| (place(bytes), label));
+        let problem = Problem { help: misfit.help, other, ..Problem::error(misfit.message) };
+        self.problems.push(problem.at(place(misfit.bytes)));
+    }
+
+    /// What has another shape than `expected`.
+    pub fn report_shape(&mut self, part: &Part, misfit: Misfit, expected: &str) {
+        if misfit.bytes.start == part.bytes().start && !misfit.is_bracket {
+            let found = excerpt(part.text);
+            self.report(part, Problem::error(format!("expected {expected}, found `{found}`")));
+        } else {
+            self.report_misfit(misfit);
+        }
     }
 
     /// Reads a whole component or other registered type, complete with the defaults of what is not written.
@@ -95,8 +107,7 @@ impl<'r> Reader<'r> {
         let value = match registration.type_info() {
             _ if registration.data::<ReflectDeserialize>().is_some() => self.leaf(part, registration, range),
             TypeInfo::Struct(info) => {
-                let fields =
-                    self.ok(part.fields().map_err(|misfit| describe(misfit, "`(field: value, …)`")))?;
+                let fields = self.shaped(part, part.fields(), "`(field: value, …)`")?;
                 let known: Vec<_> = info.iter().collect();
                 let read = self.fields(
                     part,
@@ -145,8 +156,10 @@ impl<'r> Reader<'r> {
                     wanted(registration),
                     excerpt(part.text)
                 ));
-                let detail = sentence(&misfit.message);
-                self.report(part, if is_plain(registration) { problem } else { problem.help(detail) });
+                self.report(
+                    part,
+                    if is_plain(registration) { problem } else { problem.help(misfit.message) },
+                );
                 return None;
             }
         };
@@ -161,12 +174,10 @@ impl<'r> Reader<'r> {
                 } else {
                     range.to_string()
                 };
-                let name = self.path.rsplit('.').next().unwrap_or_default().to_owned();
-                self.report(
-                    part,
-                    Problem::error(format!("`{name}` must be {bounds}, found {number}"))
-                        .label("out of range"),
-                );
+                // What does not fit into 32 bits reads as infinite; the text says what was meant.
+                let found = if number.is_finite() { number.to_string() } else { excerpt(part.text) };
+                let message = format!("{} must be {bounds}, found `{found}`", self.name());
+                self.report(part, Problem::error(message).label("out of range"));
                 return None;
             }
         }
@@ -257,7 +268,7 @@ impl<'r> Reader<'r> {
     }
 
     fn list(&mut self, part: &Part, item: TypeId, range: Option<&Range>) -> Value {
-        let elements = self.ok(part.elements().map_err(|misfit| describe(misfit, "a list `[value, …]`")))?;
+        let elements = self.shaped(part, part.elements(), "a list `[value, …]`")?;
         let mut list = DynamicList::default();
         for (index, element) in elements.iter().enumerate() {
             if let Some(value) =
@@ -282,12 +293,11 @@ impl<'r> Reader<'r> {
         if info.type_path().starts_with("core::option::Option<") {
             return self.option(part, info, registration, range);
         }
-        let owner = registration.type_info().type_path_table().short_path();
         let word = part.word();
         let Some(variant) = word.and_then(|word| info.variant(word.text)) else {
             let at = word.unwrap_or(*part);
-            let problem =
-                Problem::error(format!("`{}` is not a kind of {owner}", excerpt(at.text))).label("unknown");
+            let message = format!("`{}` is no kind of {}", excerpt(at.text), self.name());
+            let problem = Problem::error(message).label("unknown");
             self.report(&at, problem.help(suggestion(at.text, info.variant_names())));
             return None;
         };
@@ -297,7 +307,16 @@ impl<'r> Reader<'r> {
             VariantInfo::Struct(_) => Shape::Struct,
         };
         let how = how_to_write(variant);
-        let payload = self.ok(part.payload(shape).map_err(|misfit| describe(misfit, &how)))?;
+        let bare = word.is_some_and(|word| word.text.len() == part.text.len());
+        let payload = match shape {
+            // A bare name stands for all defaults.
+            Shape::Struct if bare => Payload::Fields(Vec::new()),
+            Shape::Tuple(_) if bare => {
+                self.report(part, Problem::error(format!("expected {how}, found `{}`", part.text)));
+                return None;
+            }
+            _ => self.shaped(part, part.payload(shape), &how)?,
+        };
         let variant_value =
             match (variant, payload) {
                 (VariantInfo::Struct(info), Payload::Fields(fields)) => {
@@ -350,8 +369,27 @@ impl<'r> Reader<'r> {
                 first_problems = problems;
             }
         }
-        self.problems.extend(first_problems);
+        let out_of_range = first_problems.iter().any(|problem| problem.label == "out of range");
+        match self.alternatives(info).filter(|_| !out_of_range) {
+            Some(wanted) => {
+                let message = format!("expected {wanted}, found `{}`", excerpt(part.text));
+                self.report(part, Problem::error(message));
+            }
+            None => self.problems.extend(first_problems),
+        }
         None
+    }
+
+    /// All that an enum written without names may be, if that is soon said.
+    fn alternatives(&self, info: &EnumInfo) -> Option<String> {
+        let each = info.iter().map(|variant| match variant {
+            VariantInfo::Tuple(tuple) => {
+                let registration = self.registry.get(tuple.field_at(0)?.type_id())?;
+                is_plain(registration).then(|| wanted(registration))
+            }
+            _ => Some(format!("`{}`", variant.name())),
+        });
+        Some(each.collect::<Option<Vec<_>>>()?.join(" or "))
     }
 
     fn option(
@@ -361,7 +399,7 @@ impl<'r> Reader<'r> {
         registration: &TypeRegistration,
         range: Option<&Range>,
     ) -> Value {
-        let inner = self.ok(part.option().map_err(|misfit| describe(misfit, "`Some(value)` or `None`")))?;
+        let inner = self.shaped(part, part.option(), "`Some(value)` or `None`")?;
         let Some(inner) = inner else {
             return Some(Box::new(enum_value("None", DynamicVariant::Unit, registration)));
         };
@@ -410,8 +448,18 @@ impl<'r> Reader<'r> {
         value
     }
 
-    fn ok<T>(&mut self, result: Result<T, Misfit>) -> Option<T> {
-        result.map_err(|misfit| self.report_misfit(misfit)).ok()
+    fn shaped<T>(&mut self, part: &Part, result: Result<T, Misfit>, expected: &str) -> Option<T> {
+        result.map_err(|misfit| self.report_shape(part, misfit, expected)).ok()
+    }
+
+    /// What the value being read is called: `` `radius` ``, or the place it has among values without names.
+    fn name(&self) -> String {
+        let mut steps = self.path.rsplit('.');
+        let last = steps.next().unwrap_or_default();
+        match (last.parse::<usize>(), steps.next()) {
+            (Ok(index), Some(owner)) => format!("value {} of `{owner}`", index + 1),
+            _ => format!("`{last}`"),
+        }
     }
 }
 
@@ -424,11 +472,6 @@ fn enum_value(name: &str, variant: DynamicVariant, registration: &TypeRegistrati
     let mut value = DynamicEnum::new(name, variant);
     value.set_represented_type(Some(registration.type_info()));
     value
-}
-
-/// What a reader expected, for text that has another shape altogether.
-fn describe(misfit: Misfit, expected: &str) -> Misfit {
-    Misfit { message: format!("expected {expected}: {}", misfit.message), ..misfit }
 }
 
 fn how_to_write(variant: &VariantInfo) -> String {
@@ -451,7 +494,9 @@ fn wanted(registration: &TypeRegistration) -> String {
         "AssetPath" => "a path in quotes".into(),
         "Vec2" => "two numbers `(x, y)`".into(),
         "Vec3" => "three numbers `(x, y, z)`".into(),
-        "UVec3" => "three whole numbers `(x, y, z)`".into(),
+        "Vec4" => "four numbers `(x, y, z, w)`".into(),
+        "UVec2" => "two whole numbers of 0 or more `(x, y)`".into(),
+        "UVec3" => "three whole numbers of 0 or more `(x, y, z)`".into(),
         _ => format!("a `{name}`"),
     }
 }
@@ -489,9 +534,4 @@ fn excerpt(text: &str) -> String {
     let line = text.lines().next().unwrap_or_default();
     let short: String = line.chars().take(40).collect();
     if short.len() < text.len() { format!("{short}…") } else { short }
-}
-
-fn sentence(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map(|first| first.to_lowercase().chain(letters).collect()).unwrap_or_default()
 }

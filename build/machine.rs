@@ -1,0 +1,44 @@
+//! What the machine that builds the tests has. Shared by the build scripts of several packages.
+
+use std::{
+    env,
+    path::{Path, PathBuf},
+};
+
+/// Sets `cfg(tyndall_gpu)` where a graphics adapter can be expected, so that tests which draw read *ignored* elsewhere.
+pub fn tell_gpu() {
+    println!("cargo::rustc-check-cfg=cfg(tyndall_gpu)");
+    println!("cargo::rerun-if-env-changed=VK_DRIVER_FILES");
+    println!("cargo::rerun-if-env-changed=VK_ICD_FILENAMES");
+    for folder in manifest_folders() {
+        println!("cargo::rerun-if-changed={}", folder.display());
+    }
+    let system = env::var("CARGO_CFG_TARGET_OS").unwrap_or_default();
+    if matches!(system.as_str(), "macos" | "windows") || has_vulkan_driver() {
+        println!("cargo::rustc-cfg=tyndall_gpu");
+    }
+}
+
+/// Whether a manifest of a Vulkan driver can be found as the Vulkan loader would find it: where the environment names some, no others count.
+fn has_vulkan_driver() -> bool {
+    for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+        if let Some(list) = env::var_os(variable) {
+            return env::split_paths(&list).any(|path| path.is_file() || has_manifest(&path));
+        }
+    }
+    manifest_folders().iter().any(|folder| has_manifest(folder))
+}
+
+fn manifest_folders() -> Vec<PathBuf> {
+    let system = ["/etc", "/usr/local/share", "/usr/share", "/run/opengl-driver/share"].map(PathBuf::from);
+    let user = env::var_os("XDG_DATA_HOME")
+        .map(PathBuf::from)
+        .or_else(|| env::home_dir().map(|home| home.join(".local/share")));
+    let folders = system.into_iter().chain(user).map(|folder| folder.join("vulkan/icd.d"));
+    folders.filter(|folder| folder.is_dir()).collect()
+}
+
+fn has_manifest(folder: &Path) -> bool {
+    let mut entries = folder.read_dir().into_iter().flatten().flatten();
+    entries.any(|entry| entry.path().extension().is_some_and(|ending| ending == "json"))
+}
