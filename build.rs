@@ -7,8 +7,6 @@ use std::{env, path::Path};
 
 fn main() {
     println!("cargo::rustc-check-cfg=cfg(tyndall_data)");
-    println!("cargo::rustc-check-cfg=cfg(tyndall_gpu)");
-    println!("cargo::rustc-cfg=tyndall_gpu");
     println!("cargo::rerun-if-env-changed=TYNDALL_DATA");
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=build/machine.rs");

@@ -29,11 +29,11 @@ fn scan(criterion: &mut Criterion) {
     let samples = ball();
     let mut group = criterion.benchmark_group("scan 128^3");
     group.bench_function("U8", |bench| {
-        bench.iter(|| VolumeData::new([128; 3], Vec3::ONE, Samples::U8(black_box(samples.clone()))))
+        bench.iter(|| VolumeData::new([128; 3], Vec3::ONE, Samples::U8(black_box(samples.clone()))));
     });
     let floats: Vec<f32> = samples.iter().map(|sample| f32::from(*sample)).collect();
     group.bench_function("F32", |bench| {
-        bench.iter(|| VolumeData::new([128; 3], Vec3::ONE, Samples::F32(black_box(floats.clone()))))
+        bench.iter(|| VolumeData::new([128; 3], Vec3::ONE, Samples::F32(black_box(floats.clone()))));
     });
     group.finish();
 }
@@ -79,7 +79,7 @@ fn draw(criterion: &mut Criterion) {
     ] {
         load(&mut app, folder.path(), &entities);
         group.bench_function(BenchmarkId::from_parameter(name), |bench| {
-            bench.iter(|| render::render(&mut app))
+            bench.iter(|| render::render(&mut app));
         });
     }
     group.finish();

@@ -40,8 +40,12 @@ fn transform(@location(0) position: vec3f, @location(1) normal: vec3f) -> Varyin
 fn shade(in: Varyings) -> @location(0) vec4f {
     let to_eye = select(vec3f(0.0, 0.0, 1.0), -normalize(in.position_in_eye), frame.perspective == 1u);
     let distance = select(-in.position_in_eye.z, length(in.position_in_eye), frame.perspective == 1u);
+    // The side that is seen decides which way the normal points, not the interpolated normal: near an outline that leans away from
+    // the eye, and turning it would light the outline from behind. Derivatives know the side whatever the winding is.
+    let across = cross(dpdx(in.position_in_eye), dpdy(in.position_in_eye));
+    let towards_eye = across * sign(dot(across, to_eye));
     let facing = normalize(in.normal_in_eye);
-    let normal = select(-facing, facing, dot(facing, to_eye) >= 0.0);
+    let normal = select(-facing, facing, dot(facing, towards_eye) >= 0.0);
     var radiance = mesh.ambient;
     for (var i = 0u; i < frame.light_count; i += 1u) {
         let light = lights[i];

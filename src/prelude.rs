@@ -1,8 +1,9 @@
 //! What a plugin wants to have at hand: `use tyndall::prelude::*;`.
 
 pub use crate::components::*;
+pub use crate::gpu::{Gpu, GpuOptions};
 pub use crate::report::Report;
-pub use crate::{SceneTime, Stage, TyndallPlugins};
+pub use crate::{Picture, SceneTime, Stage, TyndallPlugins};
 pub use bevy_app::prelude::{App, Plugin, PluginGroup, Update};
 pub use bevy_ecs;
 pub use bevy_ecs::prelude::*;

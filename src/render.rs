@@ -88,6 +88,9 @@ pub fn problems(world: &World, document: &SceneDocument) -> Vec<Problem> {
 ///
 /// If the scene has errors, or the GPU fails. Needs a [`Gpu`] resource.
 pub fn render(app: &mut App) -> Result<Image, RenderError> {
+    if !app.world().contains_resource::<Gpu>() {
+        return Err(GpuError::Missing.into());
+    }
     if app.world().resource::<Report>().measure && !app.world().contains_resource::<PassTimer>() {
         let timer = PassTimer::new(app.world().resource::<Gpu>());
         timer.map(|timer| app.insert_resource(timer));

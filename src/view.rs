@@ -153,16 +153,19 @@ type Boxes<'w, 's> = (
 );
 
 fn look(
-    cameras: Query<(&Name, &ViewCamera, &Placement)>,
+    cameras: Query<(Option<&Name>, &ViewCamera, &Placement)>,
     boxes: Boxes,
     settings: Res<SceneSettings>,
     picture: Res<Picture>,
     mut view: ResMut<View>,
 ) {
     let corners = scene_corners(&boxes, &settings);
-    let wanted = |name: &Name| picture.camera.as_deref().is_none_or(|camera| camera == name.as_str());
-    let found =
-        cameras.iter().filter(|(name, ..)| wanted(name)).min_by_key(|(name, ..)| name.as_str().to_owned());
+    let wanted =
+        |name: Option<&Name>| picture.camera.is_none() || picture.camera.as_deref() == name.map(Name::as_str);
+    let found = cameras
+        .iter()
+        .filter(|(name, ..)| wanted(*name))
+        .min_by_key(|(name, ..)| name.map(|name| name.as_str().to_owned()));
     let mut new = match found {
         Some((_, camera, placement)) => View::of(camera, placement.0),
         None => View::of(&camera_on_all(&corners, picture.size), DAffine3::IDENTITY),

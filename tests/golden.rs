@@ -2,6 +2,7 @@
 //!
 //! `TYNDALL_BLESS=name cargo xtask test golden` accepts what `name` looks like now (`all` for all of them). A failure leaves
 //! `name.actual.png` and `name.difference.png` beside the golden picture.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod support;
 

@@ -1,4 +1,5 @@
 //! The structs that Rust writes and shaders read have the same fields at the same places, and every shader is valid.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use tyndall::gpu::shader;

@@ -1,4 +1,5 @@
 //! Every pass makes its pipelines and runs on wgpu's empty backend: a wrong layout, format or binding shows without any adapter.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use bevy_app::App;
 use tyndall::gpu::{Gpu, GpuOptions};

@@ -1,4 +1,5 @@
 //! Volumes against values that are known exactly, through scene file, reader, upload and shader.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod support;
 

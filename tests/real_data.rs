@@ -1,4 +1,5 @@
 //! Real files, many of them broken, through scene, reader and picture. They lie in the folder that `TYNDALL_DATA` names.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod support;
 

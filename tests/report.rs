@@ -1,4 +1,5 @@
 //! Only what the scene needs: which passes run, which pipelines are made, what is held.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod support;
 

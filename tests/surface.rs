@@ -1,4 +1,5 @@
 //! Opaque meshes against Lambert's and Blinn's formulas.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod support;
 

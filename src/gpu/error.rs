@@ -9,6 +9,9 @@ pub enum GpuError {
          `cargo xtask setup` in a checkout of Tyndall"
     )]
     NoAdapter(String),
+    /// The app has no [`Gpu`](super::Gpu) resource.
+    #[error("there is no GPU to draw with: insert the resource `tyndall::gpu::Gpu` first")]
+    Missing,
     /// The adapter exists but gives no device.
     #[error("the graphics adapter `{adapter}` gives no device: {reason}")]
     NoDevice {
