@@ -18,6 +18,8 @@ STEP = 1.0
 OPACITY_LENGTH = 1.0
 
 PHONG = {"ambient": 0.2, "diffuse": 0.8, "specular": 0.3, "shininess": 20.0}
+# The half-vector turns by half the angle of the mirrored light: four times the exponent makes a highlight of the same width.
+BLINN_SHININESS = 4.0 * PHONG["shininess"]
 
 WARM_UP_FRAMES = 2
 

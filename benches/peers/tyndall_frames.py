@@ -66,7 +66,8 @@ def ron(value):
 def lighting_value(lighting):
     if lighting == "ea":
         return "EmissionAbsorption"
-    return "Gradient(" + ", ".join(f"{key}: {ron(value)}" for key, value in setting.PHONG.items()) + ")"
+    blinn = {**setting.PHONG, "shininess": setting.BLINN_SHININESS}
+    return "Gradient(" + ", ".join(f"{key}: {ron(value)}" for key, value in blinn.items()) + ")"
 
 
 def scene(name, lighting):
