@@ -113,34 +113,36 @@ fn absorbed(depth: f32) -> f32 {
 }
 
 // Blinn-Phong with the gradient of the field for a normal.
-fn shade(index: u32, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
-    let voxel = 1.0 / volumes[index].size;
+fn shade(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
+    let voxel = 1.0 / volume.size;
     let x = vec3f(voxel.x, 0.0, 0.0);
     let y = vec3f(0.0, voxel.y, 0.0);
     let z = vec3f(0.0, 0.0, voxel.z);
     var ahead = vec3f(texel_at(index, place + x), texel_at(index, place + y), texel_at(index, place + z));
     var behind = vec3f(texel_at(index, place - x), texel_at(index, place - y), texel_at(index, place - z));
-    let sentinel = vec3f(volumes[index].sentinel);
+    let sentinel = vec3f(volume.sentinel);
     ahead = select(ahead, vec3f(centre), ahead > sentinel);
     behind = select(behind, vec3f(centre), behind > sentinel);
     // The gradient is a covector: it goes through the transpose.
-    let gradient = (vec4f((ahead - behind) * volumes[index].size, 0.0) * volumes[index].texture_from_eye).xyz;
+    let gradient = (vec4f((ahead - behind) * volume.size, 0.0) * volume.texture_from_eye).xyz;
     let steepest = max(abs(gradient.x), max(abs(gradient.y), abs(gradient.z)));
-    let flat = steepest * volumes[index].lookup_scale * volumes[index].step < 1e-6;
-    let along = normalize(gradient / max(steepest, 1e-30));
+    let flat = steepest * volume.lookup_scale * volume.step < 1e-6;
+    let scaled = gradient / max(steepest, 1e-30);
+    let along = scaled * inverseSqrt(max(dot(scaled, scaled), 1e-30));
     let normal = select(along, -along, dot(along, ray.direction) > 0.0);
     var diffuse = vec3f(0.0);
     var specular = vec3f(0.0);
     for (var i = 0u; i < frame.light_count; i += 1u) {
         let to_light = lights[i].to_light;
         let irradiance = lights[i].irradiance / PI;
-        let half_way = normalize(to_light - ray.direction);
+        let sum = to_light - ray.direction;
+        let half_way = sum * inverseSqrt(max(dot(sum, sum), 1e-12));
         let cosine = max(dot(normal, to_light), 0.0);
-        let highlight = pow(max(dot(normal, half_way), 1e-6), volumes[index].shininess);
+        let highlight = pow(max(dot(normal, half_way), 1e-6), volume.shininess);
         diffuse += irradiance * select(cosine, 1.0, flat);
         specular += irradiance * select(highlight, 0.0, flat || cosine == 0.0);
     }
-    return colour * (volumes[index].ambient + volumes[index].diffuse * diffuse) + volumes[index].specular * specular;
+    return colour * (volume.ambient + volume.diffuse * diffuse) + volume.specular * specular;
 }
 
 @fragment
@@ -224,7 +226,7 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                 let alpha = absorbed(entry.a * volume.reach * length);
                 var colour = entry.rgb;
                 if ANY_LIT {
-                    colour = select(colour, shade(index, colour, place, texel, ray), volume.lighting == 1u);
+                    colour = select(colour, shade(index, volume, colour, place, texel, ray), volume.lighting == 1u);
                 }
                 radiance += transmittance * alpha * colour;
                 transmittance *= 1.0 - alpha;

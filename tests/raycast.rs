@@ -412,3 +412,25 @@ fn a_gradient_lit_ball_is_shaded_as_a_ball() {
         assert!((seen - expected).abs() < 0.02, "at {x} {y}: {seen}, expected {expected}");
     }
 }
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn a_volume_beyond_the_adapters_limit_is_refused_with_the_limit_and_a_mend() {
+    let mut studio = Studio::new();
+    let limit = studio.app.world().resource::<tyndall::gpu::Gpu>().device.limits().max_texture_dimension_3d;
+    studio.file("long.raw", &vec![9; limit as usize + 1]);
+    let scene = format!(
+        "(entities: {{ \"v\": ( Volume: Raw(path: \"long.raw\", size: (1, 1, {}), format: U8) ) }})",
+        limit + 1
+    );
+    let path = studio.file("scene.ron", scene.as_bytes());
+    let document = tyndall::render::load_scene(&mut studio.app, &path, &[]);
+    assert!(!document.has_errors());
+    assert!(tyndall::render::render(&mut studio.app).is_err());
+    let problems = tyndall::render::problems(studio.app.world(), &document);
+    let told = problems.iter().find(|problem| problem.message.contains(&limit.to_string())).unwrap();
+    assert!(
+        told.help.as_ref().is_some_and(|help| help.contains("downsample")) && told.place.is_some(),
+        "{told:?}"
+    );
+}
