@@ -82,6 +82,14 @@ pub fn problems(world: &World, document: &SceneDocument) -> Vec<Problem> {
     world.resource::<Problems>().0.iter().map(placed).collect()
 }
 
+/// Every problem of a document and of the files that its sound components name, for a program that ends with them: what could be read
+/// replaces the scene in the world, even where errors would have kept it out.
+pub fn all_problems(app: &mut App, document: &SceneDocument) -> Vec<Problem> {
+    scene::reconcile(app.world_mut(), document);
+    app.update();
+    problems(app.world(), document)
+}
+
 /// Draws the world as it is now and brings the picture back.
 ///
 /// # Errors

@@ -3,7 +3,7 @@
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use std::path::Path;
 use tyndall::prelude::*;
-use tyndall::render::{load_scene, problems};
+use tyndall::render::{all_problems, load_scene};
 use tyndall::scene::{Problem, Severity};
 
 /// What is worth a note, but no error.
@@ -14,10 +14,7 @@ fn check(scene: &Path) -> Vec<Problem> {
     let mut app = App::new();
     app.add_plugins(TyndallPlugins).add_plugins(tyndall_turntable::TurntablePlugin);
     let document = load_scene(&mut app, scene, &[]);
-    if !document.has_errors() {
-        app.update();
-    }
-    problems(app.world(), &document)
+    all_problems(&mut app, &document)
 }
 
 #[test]

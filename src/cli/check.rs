@@ -32,10 +32,7 @@ pub(super) fn check(app: &mut App, path: &Path) -> Vec<Problem> {
     // An earlier scene may hold an equal component with the same mistake, which would not be read, nor reported, again.
     scene::reconcile(app.world_mut(), &SceneDocument::default());
     let document = render::load_scene(app, path, &[]);
-    if !document.has_errors() {
-        app.update();
-    }
-    render::problems(app.world(), &document)
+    render::all_problems(app, &document)
 }
 
 fn describe(scene: &Path, problem: &Problem) -> serde_json::Value {

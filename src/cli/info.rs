@@ -13,10 +13,7 @@ pub(super) fn run(app: &mut App, arguments: &InfoArguments) -> Result<(), Failur
     let facts = match &arguments.scene {
         Some(scene) => {
             let document = render::load_scene(app, scene, &[]);
-            if !document.has_errors() {
-                app.update();
-            }
-            let problems = render::problems(app.world(), &document);
+            let problems = render::all_problems(app, &document);
             exit::print(&problems);
             if problems.iter().any(|problem| problem.severity == crate::scene::Severity::Error) {
                 return Err(Failure::Input);

@@ -22,8 +22,8 @@ pub(super) fn run(app: &mut App, arguments: &RenderArguments, started: Instant) 
     let options = GpuOptions { portable: arguments.portable };
     let gpu = std::thread::spawn(move || (pollster::block_on(Gpu::new(&options)), Instant::now()));
     let document = render::load_scene(app, &arguments.scene, &arguments.overrides);
-    let fine =
-        check_document(&document).and_then(|()| check_camera(app.world_mut(), arguments.camera.as_deref()));
+    let fine = check_document(app, &document)
+        .and_then(|()| check_camera(app.world_mut(), arguments.camera.as_deref()));
     if let Err(failure) = fine {
         // Drivers do not take it well when the program ends while they wake up.
         let _ = gpu.join();
@@ -67,11 +67,11 @@ pub(super) fn run(app: &mut App, arguments: &RenderArguments, started: Instant) 
     Ok(())
 }
 
-fn check_document(document: &SceneDocument) -> Result<(), Failure> {
+fn check_document(app: &mut App, document: &SceneDocument) -> Result<(), Failure> {
     if !document.has_errors() {
         return Ok(());
     }
-    exit::print(&document.problems);
+    exit::print(&render::all_problems(app, document));
     let from_command_line = |problem: &Problem| {
         problem.place.as_ref().is_some_and(|place| place.file.path() == Path::new("--set"))
     };
