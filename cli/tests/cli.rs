@@ -157,7 +157,8 @@ fn check_reports_for_machines() {
     let place = Place::with_scene("(entities: { \"ball\": ( Mesh: File(\"a.obj\") ), \"ä\": ( Fong: () ) })");
     let report = place.run(1, &["check", "--json", "scene.ron"]).json();
     let problem = &report[0];
-    assert_eq!(report.as_array().unwrap().len(), 1, "{report}");
+    assert_eq!(report.as_array().unwrap().len(), 2, "{report}");
+    assert!(report[1]["message"].as_str().unwrap().contains("a.obj: no such file"), "{report}");
     assert_eq!((&problem["scene"], &problem["severity"]), (&"scene.ron".into(), &"error".into()));
     assert_eq!(problem["help"], "did you mean `Phong`?");
     let place_of = &problem["place"];
