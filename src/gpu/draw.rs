@@ -101,6 +101,35 @@ impl Draw {
         })
     }
 
+    /// Draws over the whole of a target, in a pass of its own, and hands it in.
+    pub fn cover(
+        &self,
+        gpu: &Gpu,
+        resources: &[wgpu::BindingResource],
+        target: &wgpu::TextureView,
+        timing: Option<wgpu::RenderPassTimestampWrites>,
+    ) {
+        let bind_group = self.bind(gpu, resources);
+        let label = Some(self.label);
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
+        let load = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label,
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+            })],
+            timestamp_writes: timing,
+            ..Default::default()
+        });
+        self.begin(&mut pass, &bind_group, &[]);
+        pass.draw(0..3, 0..1);
+        drop(pass);
+        gpu.queue.submit([encoder.finish()]);
+    }
+
     /// Makes the pipeline and the bind group current. `offsets` choose the structs of [`binding::UNIFORM_EACH`].
     pub fn begin(&self, pass: &mut wgpu::RenderPass, bind_group: &wgpu::BindGroup, offsets: &[u32]) {
         pass.set_pipeline(&self.pipeline);

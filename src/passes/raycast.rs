@@ -405,27 +405,7 @@ fn draw(
         wgpu::BindingResource::Sampler(sampler),
     ];
     resources.extend(volumes.iter().map(|volume| wgpu::BindingResource::TextureView(&volume.3.view)));
-    let bind_group = draw.bind(gpu, &resources);
-    let mut encoder =
-        gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("raycast") });
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("raycast"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &target.view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                store: wgpu::StoreOp::Store,
-            },
-        })],
-        timestamp_writes: timing,
-        ..Default::default()
-    });
-    draw.begin(&mut pass, &bind_group, &[]);
-    pass.draw(0..3, 0..1);
-    drop(pass);
-    gpu.queue.submit([encoder.finish()]);
+    draw.cover(gpu, &resources, &target.view, timing);
 }
 
 fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {

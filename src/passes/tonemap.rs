@@ -88,28 +88,8 @@ fn draw(
         "display",
         &DisplayUniform { gain: view.exposure.exp2(), exponent: view.gamma.recip() },
     );
-    let bind_group =
-        draw.bind(gpu, &[display.as_entire_binding(), wgpu::BindingResource::TextureView(&radiance.view)]);
-    let mut encoder =
-        gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("tonemap") });
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("tonemap"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &target.view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                store: wgpu::StoreOp::Store,
-            },
-        })],
-        timestamp_writes: timing,
-        ..Default::default()
-    });
-    draw.begin(&mut pass, &bind_group, &[]);
-    pass.draw(0..3, 0..1);
-    drop(pass);
-    gpu.queue.submit([encoder.finish()]);
+    let resources = [display.as_entire_binding(), wgpu::BindingResource::TextureView(&radiance.view)];
+    draw.cover(gpu, &resources, &target.view, timing);
     report.ran("tonemap", &[("pixels", u64::from(picture.size.x) * u64::from(picture.size.y))]);
     Ok(())
 }

@@ -16,6 +16,7 @@ mod problem;
 mod reader;
 mod reconcile;
 mod tokens;
+mod wanted;
 
 pub use document::{Override, SceneComponent, SceneDocument, SceneEntity};
 pub use names::nearest;

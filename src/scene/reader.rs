@@ -3,6 +3,7 @@
 use super::names::suggestion;
 use super::parts::{Misfit, Named, Part, Payload, Shape};
 use super::problem::{Place, Problem, SourceFile};
+use super::wanted::{excerpt, how_to_write, is_plain, numbers, wanted};
 use crate::components::{AssetPath, Range, ReflectValidate, Required, Untagged};
 use bevy_reflect::enums::{DynamicEnum, DynamicVariant, EnumInfo, VariantInfo};
 use bevy_reflect::list::DynamicList;
@@ -472,66 +473,4 @@ fn enum_value(name: &str, variant: DynamicVariant, registration: &TypeRegistrati
     let mut value = DynamicEnum::new(name, variant);
     value.set_represented_type(Some(registration.type_info()));
     value
-}
-
-fn how_to_write(variant: &VariantInfo) -> String {
-    match variant {
-        VariantInfo::Unit(info) => format!("`{}`", info.name()),
-        VariantInfo::Tuple(info) => format!("`{}({})`", info.name(), vec!["…"; info.field_len()].join(", ")),
-        VariantInfo::Struct(info) => format!("`{}(field: value, …)`", info.name()),
-    }
-}
-
-/// What a leaf of this type looks like.
-fn wanted(registration: &TypeRegistration) -> String {
-    let name = registration.type_info().type_path_table().short_path();
-    match name {
-        "f32" | "f64" => "a number".into(),
-        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number of 0 or more".into(),
-        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number".into(),
-        "bool" => "`true` or `false`".into(),
-        "String" => "text in quotes".into(),
-        "AssetPath" => "a path in quotes".into(),
-        "Vec2" => "two numbers `(x, y)`".into(),
-        "Vec3" => "three numbers `(x, y, z)`".into(),
-        "Vec4" => "four numbers `(x, y, z, w)`".into(),
-        "UVec2" => "two whole numbers of 0 or more `(x, y)`".into(),
-        "UVec3" => "three whole numbers of 0 or more `(x, y, z)`".into(),
-        _ => format!("a `{name}`"),
-    }
-}
-
-/// Whether [`wanted`] says all there is to say.
-fn is_plain(registration: &TypeRegistration) -> bool {
-    !wanted(registration).starts_with("a `")
-}
-
-/// The numbers in a leaf.
-fn numbers(value: &dyn PartialReflect) -> Vec<f64> {
-    use glam::{UVec3, Vec2, Vec3};
-    let any = value;
-    if let Some(number) = any.try_downcast_ref::<f32>() {
-        vec![f64::from(*number)]
-    } else if let Some(number) = any.try_downcast_ref::<f64>() {
-        vec![*number]
-    } else if let Some(number) = any.try_downcast_ref::<u32>() {
-        vec![f64::from(*number)]
-    } else if let Some(number) = any.try_downcast_ref::<i32>() {
-        vec![f64::from(*number)]
-    } else if let Some(vector) = any.try_downcast_ref::<Vec2>() {
-        vector.to_array().map(f64::from).to_vec()
-    } else if let Some(vector) = any.try_downcast_ref::<Vec3>() {
-        vector.to_array().map(f64::from).to_vec()
-    } else if let Some(vector) = any.try_downcast_ref::<UVec3>() {
-        vector.to_array().map(f64::from).to_vec()
-    } else {
-        Vec::new()
-    }
-}
-
-/// The first characters of a text, on one line.
-fn excerpt(text: &str) -> String {
-    let line = text.lines().next().unwrap_or_default();
-    let short: String = line.chars().take(40).collect();
-    if short.len() < text.len() { format!("{short}…") } else { short }
 }
