@@ -11,8 +11,11 @@ mod directional_light;
 mod mesh;
 mod phong;
 mod ray_cast;
+mod scattering_camera;
+mod scattering_maps;
 mod scene_settings;
 mod shading;
+mod subsurface;
 mod transfer_function;
 mod transform;
 mod view_camera;
@@ -26,8 +29,11 @@ pub use directional_light::DirectionalLight;
 pub use mesh::Mesh;
 pub use phong::Phong;
 pub use ray_cast::RayCast;
+pub use scattering_camera::{ScatteringCamera, ScatteringCameraOf, ScatteringCameras};
+pub use scattering_maps::{MapResolution, MapStrategy, SampleRadius, ScatteringMaps};
 pub use scene_settings::SceneSettings;
 pub use shading::Shading;
+pub use subsurface::{DipoleModel, Material, Specular, Subsurface};
 pub use transfer_function::{Classification, ControlPoint, IsoValue, TransferFunction};
 pub(crate) use transform::place;
 pub use transform::{Motion, Placement, Scale, Transform};
@@ -43,8 +49,11 @@ pub(crate) fn register(app: &mut App) {
         .register_type::<Mesh>()
         .register_type::<Phong>()
         .register_type::<RayCast>()
+        .register_type::<ScatteringCamera>()
+        .register_type::<ScatteringMaps>()
         .register_type::<SceneSettings>()
         .register_type::<Shading>()
+        .register_type::<Subsurface>()
         .register_type::<TransferFunction>()
         .register_type::<Transform>()
         .register_type::<ViewCamera>()

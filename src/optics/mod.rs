@@ -1,3 +1,4 @@
 //! Formulas, pure: no entity, no GPU.
 
+pub mod materials;
 pub mod transfer;
