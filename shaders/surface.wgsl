@@ -1,11 +1,13 @@
-// Opaque meshes, lit locally: the radiance that each pixel's nearest surface sends to the eye, and how far away it is.
+// Meshes: the radiance that each pixel's nearest surface sends to the eye, and how far away it is.
 //
-//   L = ambient + sum over lights of (diffuse/pi + specular (s+8)/(8 pi) (n.h)^s) E max(n.l, 0)
+//   opaque       L = ambient + sum over lights of (diffuse/pi + specular (s+8)/(8 pi) (n.h)^s) E max(n.l, 0)
+//   translucent  L = T(eta, n.o) M_o + sum over lights of specular (s+8)/(8 pi) (n.h)^s E max(n.l, 0)
 //
-// reads  vertices (position, normal), the mesh, lights
+// reads  vertices (position, normal; what leaves there), the mesh, lights
 // writes rgba32float: radiance, distance along the ray (FAR where there is no surface)
 
 #import frame
+#import fresnel
 #import lights
 
 struct MeshInstance {
@@ -16,6 +18,8 @@ struct MeshInstance {
     shininess: f32,
     diffuse: vec3f,
     specular: vec3f,
+    // Index of refraction of a translucent mesh.
+    eta: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -36,8 +40,13 @@ fn transform(@location(0) position: vec3f, @location(1) normal: vec3f) -> Varyin
     return Varyings(frame.clip_from_eye * vec4f(position_in_eye, 1.0), position_in_eye, normal_in_eye);
 }
 
-@fragment
-fn shade(in: Varyings) -> @location(0) vec4f {
+struct Seen {
+    normal: vec3f,
+    to_eye: vec3f,
+    distance: f32,
+}
+
+fn seen(in: Varyings) -> Seen {
     let to_eye = select(vec3f(0.0, 0.0, 1.0), -normalize(in.position_in_eye), frame.perspective == 1u);
     let distance = select(-in.position_in_eye.z, length(in.position_in_eye), frame.perspective == 1u);
     // The side that is seen decides which way the normal points, not the interpolated normal: near an outline that leans away from
@@ -45,13 +54,52 @@ fn shade(in: Varyings) -> @location(0) vec4f {
     let across = cross(dpdx(in.position_in_eye), dpdy(in.position_in_eye));
     let towards_eye = across * sign(dot(across, to_eye));
     let facing = normalize(in.normal_in_eye);
-    let normal = select(-facing, facing, dot(facing, towards_eye) >= 0.0);
-    var radiance = mesh.ambient;
+    return Seen(select(-facing, facing, dot(facing, towards_eye) >= 0.0), to_eye, distance);
+}
+
+// What reflects the lights towards the eye.
+fn reflected(at: Seen, diffuse: vec3f) -> vec3f {
+    var radiance = vec3f(0.0);
     for (var i = 0u; i < frame.light_count; i += 1u) {
         let light = lights[i];
-        let half_way = normalize(light.to_light + to_eye);
-        let highlight = (mesh.shininess + 8.0) / (8.0 * PI) * pow(max(dot(normal, half_way), 0.0), mesh.shininess);
-        radiance += (mesh.diffuse / PI + mesh.specular * highlight) * light.irradiance * max(dot(normal, light.to_light), 0.0);
+        let half_way = normalize(light.to_light + at.to_eye);
+        let highlight = (mesh.shininess + 8.0) / (8.0 * PI) * pow(max(dot(at.normal, half_way), 0.0), mesh.shininess);
+        radiance += (diffuse / PI + mesh.specular * highlight) * light.irradiance * max(dot(at.normal, light.to_light), 0.0);
     }
-    return vec4f(radiance, distance);
+    return radiance;
+}
+
+@fragment
+fn shade(in: Varyings) -> @location(0) vec4f {
+    let at = seen(in);
+    return vec4f(mesh.ambient + reflected(at, mesh.diffuse), at.distance);
+}
+
+struct TranslucentVaryings {
+    @builtin(position) position_in_clip: vec4f,
+    @location(0) position_in_eye: vec3f,
+    @location(1) normal_in_eye: vec3f,
+    @location(2) radiosity: vec3f,
+}
+
+@vertex
+fn transform_translucent(
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) radiosity: vec4f,
+) -> TranslucentVaryings {
+    let out = transform(position, normal);
+    return TranslucentVaryings(out.position_in_clip, out.position_in_eye, out.normal_in_eye, radiosity.xyz);
+}
+
+@fragment
+fn shade_translucent(in: TranslucentVaryings) -> @location(0) vec4f {
+    let at = seen(Varyings(in.position_in_clip, in.position_in_eye, in.normal_in_eye));
+    // Where the interpolated normal leans away from the eye, the surface is seen edge-on.
+    let leaves = fresnel_transmittance(max(dot(at.normal, at.to_eye), 0.0), mesh.eta);
+    var radiance = leaves * in.radiosity;
+    if any(mesh.specular > vec3f(0.0)) {
+        radiance += reflected(at, vec3f(0.0));
+    }
+    return vec4f(radiance, at.distance);
 }

@@ -19,7 +19,13 @@ pub enum Stage {
     Classify,
     /// The camera and the lights of the frame.
     View,
-    /// Opaque meshes.
+    /// What each light reaches of the meshes that scatter.
+    LightGbuffer,
+    /// The light that leaves those meshes, point by point.
+    ScatteredRadiosity,
+    /// The same of all lights together.
+    Combine,
+    /// Meshes.
     Surface,
     /// Volumes.
     RayCast,
@@ -28,13 +34,16 @@ pub enum Stage {
 }
 
 impl Stage {
-    const ALL: [Self; 9] = [
+    const ALL: [Self; 12] = [
         Self::Animate,
         Self::Place,
         Self::Load,
         Self::Upload,
         Self::Classify,
         Self::View,
+        Self::LightGbuffer,
+        Self::ScatteredRadiosity,
+        Self::Combine,
         Self::Surface,
         Self::RayCast,
         Self::Tonemap,
@@ -58,6 +67,7 @@ impl PluginGroup for TyndallPlugins {
             .add(ScenePlugin)
             .add(loading::LoadingPlugin)
             .add(view::ViewPlugin)
+            .add(passes::ScatteringPlugin)
             .add(passes::surface::SurfacePlugin)
             .add(passes::raycast::RayCastPlugin)
             .add(passes::tonemap::TonemapPlugin)

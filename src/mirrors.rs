@@ -51,6 +51,10 @@ pub fn all() -> Vec<Mirror> {
     vec![
         view::FrameUniform::mirror(),
         view::LightUniform::mirror(),
+        passes::light_gbuffer::LightMeshUniform::mirror(),
+        passes::medium::MediumUniform::mirror(),
+        passes::scattered_radiosity::EstimatorUniform::mirror(),
+        passes::combine::CombinationUniform::mirror(),
         passes::surface::MeshInstance::mirror(),
         passes::raycast::VolumeInstance::mirror(),
         passes::tonemap::DisplayUniform::mirror(),
@@ -61,5 +65,9 @@ pub fn all() -> Vec<Mirror> {
 /// interpolates one and the shader the other.
 pub fn generated_modules() -> Vec<(&'static str, String)> {
     use crate::gpu::Filtering::{Sampler, Shader};
-    vec![("volumes", passes::raycast::volumes_module(&[Sampler, Shader], true)), view::lights_module(4)]
+    vec![
+        ("volumes", passes::raycast::volumes_module(&[Sampler, Shader], true)),
+        view::lights_module(4),
+        passes::scattered_radiosity::sampling_module(false),
+    ]
 }

@@ -41,6 +41,15 @@ impl Report {
         }
     }
 
+    /// Notes how many bytes something holds on the GPU; what holds none is not listed.
+    pub fn hold(&mut self, what: &'static str, bytes: u64) {
+        if bytes == 0 {
+            self.gpu_bytes.remove(what);
+        } else {
+            self.gpu_bytes.insert(what, bytes);
+        }
+    }
+
     /// Adds time to a pass.
     pub fn took(&mut self, pass: &'static str, milliseconds: f64) {
         *self.passes.entry(pass).or_default().milliseconds.get_or_insert(0.0) += milliseconds;

@@ -82,7 +82,7 @@ impl View {
     }
 
     /// Half of the picture across and up: tangents in perspective, units of eye space in an orthographic view.
-    fn half_extent(&self, size: UVec2) -> Vec2 {
+    pub fn half_extent(&self, size: UVec2) -> Vec2 {
         let half_height = match self.projection {
             Projection::Perspective { vertical_fov } => (f64::from(vertical_fov).to_radians() / 2.0).tan(),
             Projection::Orthographic { height } => f64::from(height) / 2.0 / self.reach,
@@ -239,19 +239,39 @@ fn upload_frame(
 }
 
 fn light_uniform(view: &View, light: &DirectionalLight, motion: Option<&Motion>) -> LightUniform {
-    let moved =
-        motion.map_or(DAffine3::IDENTITY, |motion| motion.0).transform_vector3(light.direction.as_dvec3());
-    let to_light = -view.eye_from_scene.transform_vector3(moved).normalize();
+    let to_light = view.eye_from_scene.transform_vector3(to_light(light, motion)).normalize();
     LightUniform { to_light: to_light.as_vec3(), irradiance: light.irradiance }
+}
+
+/// The lights by entity, with the directions to them in the scene.
+pub(crate) fn lights_in_order(
+    lights: &Query<(Entity, &DirectionalLight, Option<&Motion>)>,
+) -> Vec<(Entity, DVec3)> {
+    let mut all: Vec<_> =
+        lights.iter().map(|(entity, light, motion)| (entity, to_light(light, motion))).collect();
+    all.sort_by_key(|(entity, _)| *entity);
+    all.truncate(MAX_LIGHTS);
+    all
+}
+
+/// The direction to a light in the scene, of unit length.
+fn to_light(light: &DirectionalLight, motion: Option<&Motion>) -> DVec3 {
+    let motion = motion.map_or(DAffine3::IDENTITY, |motion| motion.0);
+    -motion.transform_vector3(light.direction.as_dvec3()).normalize()
 }
 
 /// A mesh or volume in eye space, and the matrix for its normals.
 pub(crate) fn to_eye(view: &View, scene_from_entity: DAffine3) -> (DAffine3, DMat4) {
     let eye_from_entity = view.eye_from_scene * scene_from_entity;
-    let normals = eye_from_entity.matrix3.inverse().transpose();
-    // Of unit size, so that large and small scales alike stay within 32 bits.
+    (eye_from_entity, normal_matrix(eye_from_entity))
+}
+
+/// The matrix that takes normals where `affine` takes positions. Its numbers are about 1, so that large and small scales alike stay
+/// within 32 bits; what it gives is not of unit length.
+pub(crate) fn normal_matrix(affine: DAffine3) -> DMat4 {
+    let normals = affine.matrix3.inverse().transpose();
     let largest = normals.to_cols_array().into_iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));
-    (eye_from_entity, DMat4::from_mat3(normals * if largest > 0.0 { largest.recip() } else { 1.0 }))
+    DMat4::from_mat3(normals * if largest > 0.0 { largest.recip() } else { 1.0 })
 }
 
 /// The picture's background as a texel of the surface target: at the end of every ray.

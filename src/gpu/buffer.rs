@@ -46,6 +46,19 @@ pub fn uniform_each<T: ShaderType + ShaderSize + WriteInto>(
     (init(gpu, label, &bytes), stride)
 }
 
+/// A storage buffer of zeros that kernels write, and draws may take vertices from.
+pub fn storage(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC;
+    let label = Some(label);
+    gpu.device.create_buffer(&wgpu::BufferDescriptor { label, size: size.max(16), usage, mapped_at_creation: false })
+}
+
+/// A storage buffer of these bytes, for kernels to read.
+pub fn storage_of(gpu: &Gpu, label: &str, contents: &[u8]) -> wgpu::Buffer {
+    let usage = wgpu::BufferUsages::STORAGE;
+    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+}
+
 fn init(gpu: &Gpu, label: &str, contents: &[u8]) -> wgpu::Buffer {
     let usage = wgpu::BufferUsages::UNIFORM;
     gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })

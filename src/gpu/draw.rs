@@ -20,8 +20,8 @@ pub struct DrawDescriptor<'a> {
     pub entry_points: (&'a str, &'a str),
     /// What is bound, in the order of the bindings from 0.
     pub bindings: &'a [wgpu::BindingType],
-    /// Floats of each vertex attribute, interleaved; none for a full-screen draw.
-    pub attributes: &'a [wgpu::VertexAttribute],
+    /// Vertex buffers and their attributes, interleaved; none for a full-screen draw.
+    pub vertex_buffers: &'a [&'a [wgpu::VertexAttribute]],
     /// Format of the colour target.
     pub format: wgpu::TextureFormat,
     /// Whether the nearest fragment wins, with reversed depth.
@@ -33,8 +33,9 @@ impl Draw {
     pub fn new(gpu: &Gpu, descriptor: &DrawDescriptor) -> Result<Self, GpuError> {
         let module = shader::module(gpu, descriptor.name, descriptor.generated)?;
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let entries: Vec<_> =
-            descriptor.bindings.iter().enumerate().map(|(index, ty)| entry(index, *ty)).collect();
+            descriptor.bindings.iter().enumerate().map(|(index, ty)| layout_entry(index, *ty, visibility)).collect();
         let label = Some(descriptor.name);
         let layout = gpu
             .device
@@ -44,13 +45,7 @@ impl Draw {
             bind_group_layouts: &[Some(&layout)],
             immediate_size: 0,
         });
-        let stride = descriptor.attributes.iter().map(|attribute| attribute.format.size()).sum();
-        let vertices = wgpu::VertexBufferLayout {
-            array_stride: stride,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: descriptor.attributes,
-        };
-        let buffers = [Some(vertices)];
+        let buffers: Vec<_> = descriptor.vertex_buffers.iter().copied().map(vertex_buffer).map(Some).collect();
         let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label,
             layout: Some(&pipeline_layout),
@@ -58,7 +53,7 @@ impl Draw {
                 module: &module,
                 entry_point: Some(descriptor.entry_points.0),
                 compilation_options: Default::default(),
-                buffers: if descriptor.attributes.is_empty() { &[] } else { &buffers },
+                buffers: &buffers,
             },
             primitive: Default::default(),
             depth_stencil: descriptor.depth.then(|| wgpu::DepthStencilState {
@@ -86,19 +81,7 @@ impl Draw {
 
     /// Binds resources in the order of the bindings.
     pub fn bind(&self, gpu: &Gpu, resources: &[wgpu::BindingResource]) -> wgpu::BindGroup {
-        let entries: Vec<_> = resources
-            .iter()
-            .enumerate()
-            .map(|(index, resource)| wgpu::BindGroupEntry {
-                binding: index as u32,
-                resource: resource.clone(),
-            })
-            .collect();
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(self.label),
-            layout: &self.layout,
-            entries: &entries,
-        })
+        bind(gpu, self.label, &self.layout, resources)
     }
 
     /// Draws over the whole of a target, in a pass of its own, and hands it in.
@@ -137,13 +120,35 @@ impl Draw {
     }
 }
 
-fn entry(index: usize, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding: index as u32,
-        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-        ty,
-        count: None,
+fn vertex_buffer(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
+    wgpu::VertexBufferLayout {
+        array_stride: attributes.iter().map(|attribute| attribute.format.size()).sum(),
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes,
     }
+}
+
+pub(super) fn layout_entry(
+    index: usize,
+    ty: wgpu::BindingType,
+    visibility: wgpu::ShaderStages,
+) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry { binding: index as u32, visibility, ty, count: None }
+}
+
+pub(super) fn bind(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    resources: &[wgpu::BindingResource],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = resources
+        .iter()
+        .enumerate()
+        .map(|(index, resource)| wgpu::BindGroupEntry { binding: index as u32, resource: resource.clone() })
+        .collect();
+    let label = Some(label);
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout, entries: &entries })
 }
 
 /// The kinds of binding that draws use.
@@ -154,6 +159,10 @@ pub mod binding {
     pub const UNIFORM_EACH: wgpu::BindingType = buffer(true);
     /// A 2D texture of floats that is read texel by texel.
     pub const TEXTURE: wgpu::BindingType = texture(wgpu::TextureViewDimension::D2, false);
+    /// A storage buffer that is only read.
+    pub const STORAGE: wgpu::BindingType = storage(true);
+    /// A storage buffer that is written.
+    pub const STORAGE_OUT: wgpu::BindingType = storage(false);
     /// A 2D texture of unsigned integers.
     pub const INTEGERS: wgpu::BindingType = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Uint,
@@ -167,6 +176,14 @@ pub mod binding {
         wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
             has_dynamic_offset,
+            min_binding_size: None,
+        }
+    }
+
+    const fn storage(read_only: bool) -> wgpu::BindingType {
+        wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only },
+            has_dynamic_offset: false,
             min_binding_size: None,
         }
     }

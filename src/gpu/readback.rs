@@ -18,12 +18,24 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuEr
         texture.size(),
     );
     gpu.queue.submit([encoder.finish()]);
-    let bytes = read_buffer(gpu, &buffer)?;
+    let bytes = read_mapped(gpu, &buffer)?;
     Ok(bytes.chunks_exact(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
 }
 
+/// The bytes of a buffer that can be copied from.
+pub fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+    let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
+    let descriptor =
+        wgpu::BufferDescriptor { label: Some("read back"), size: buffer.size(), usage, mapped_at_creation: false };
+    let readable = gpu.device.create_buffer(&descriptor);
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &readable, 0, buffer.size());
+    gpu.queue.submit([encoder.finish()]);
+    read_mapped(gpu, &readable)
+}
+
 /// What is in a buffer that can be mapped for reading.
-pub(super) fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+pub(super) fn read_mapped(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
     let failed = |reason: String| GpuError::Driver { doing: "reading back".into(), reason };
     let (sender, receiver) = std::sync::mpsc::channel();
     buffer.map_async(wgpu::MapMode::Read, .., move |result| {

@@ -14,9 +14,16 @@ macro_rules! sources {
 }
 
 sources! {
+    "bssrdf" => "shared/bssrdf.wgsl",
+    "combine" => "combine.wgsl",
+    "estimator" => "shared/estimator.wgsl",
     "frame" => "shared/frame.wgsl",
+    "fresnel" => "shared/fresnel.wgsl",
     "fullscreen" => "shared/fullscreen.wgsl",
+    "light_gbuffer" => "light_gbuffer.wgsl",
     "raycast" => "raycast.wgsl",
+    "sampling_adaptive" => "shared/sampling_adaptive.wgsl",
+    "scattered_radiosity" => "scattered_radiosity.wgsl",
     "surface" => "surface.wgsl",
     "tonemap" => "tonemap.wgsl",
 }

@@ -1,4 +1,4 @@
-use super::readback::read_buffer;
+use super::readback::read_mapped;
 use super::{Gpu, GpuError};
 use bevy_ecs::prelude::Resource;
 
@@ -29,18 +29,33 @@ impl PassTimer {
         })
     }
 
-    /// The places in which a pass is to leave its beginning and end.
+    /// The places in which a draw is to leave its beginning and end.
     pub fn time(&mut self, name: &'static str) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
+        let (beginning, end) = self.places(name)?;
+        Some(wgpu::RenderPassTimestampWrites {
+            query_set: &self.queries,
+            beginning_of_pass_write_index: Some(beginning),
+            end_of_pass_write_index: Some(end),
+        })
+    }
+
+    /// The places in which a kernel is to leave its beginning and end.
+    pub fn time_compute(&mut self, name: &'static str) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+        let (beginning, end) = self.places(name)?;
+        Some(wgpu::ComputePassTimestampWrites {
+            query_set: &self.queries,
+            beginning_of_pass_write_index: Some(beginning),
+            end_of_pass_write_index: Some(end),
+        })
+    }
+
+    fn places(&mut self, name: &'static str) -> Option<(u32, u32)> {
         let index = self.names.len() as u32;
         if index == CAPACITY {
             return None;
         }
         self.names.push(name);
-        Some(wgpu::RenderPassTimestampWrites {
-            query_set: &self.queries,
-            beginning_of_pass_write_index: Some(2 * index),
-            end_of_pass_write_index: Some(2 * index + 1),
-        })
+        Some((2 * index, 2 * index + 1))
     }
 
     /// The passes timed since the last call, and their milliseconds. Waits for them.
@@ -53,7 +68,7 @@ impl PassTimer {
         encoder.resolve_query_set(&self.queries, 0..2 * names.len() as u32, &self.resolved, 0);
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, self.readable.size());
         gpu.queue.submit([encoder.finish()]);
-        let bytes = read_buffer(gpu, &self.readable)?;
+        let bytes = read_mapped(gpu, &self.readable)?;
         self.readable.unmap();
         let ticks: Vec<u64> = bytes.chunks_exact(8).map(bytemuck::pod_read_unaligned).collect();
         let milliseconds = |pair: &[u64]| {

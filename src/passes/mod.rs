@@ -1,7 +1,38 @@
 //! Stale products become textures, and textures a picture. One file a pass, in the order in which they run.
 
+pub(crate) mod body;
 pub mod classify;
+pub mod combine;
+pub mod light_gbuffer;
+pub mod medium;
 pub mod raycast;
+pub mod scattered_radiosity;
 pub mod surface;
+pub mod surface_points;
 pub mod tonemap;
 pub mod upload;
+
+use crate::{Stage, gpu::Gpu};
+use bevy_app::{App, Plugin, Update};
+use bevy_ecs::prelude::*;
+
+/// The passes that compute the light which leaves translucent meshes.
+pub(crate) struct ScatteringPlugin;
+
+impl Plugin for ScatteringPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<light_gbuffer::LightGbuffer>()
+            .init_resource::<scattered_radiosity::Scatterer>()
+            .init_resource::<combine::Combiner>();
+        let there_is_a_gpu = resource_exists::<Gpu>;
+        app.add_systems(
+            Update,
+            (
+                (body::measure, surface_points::refine, light_gbuffer::run).chain().in_set(Stage::LightGbuffer),
+                scattered_radiosity::run.in_set(Stage::ScatteredRadiosity),
+                combine::run.in_set(Stage::Combine),
+            )
+                .run_if(there_is_a_gpu),
+        );
+    }
+}

@@ -237,7 +237,7 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
             ],
             entry_points: ("cover", "march"),
             bindings: &bindings,
-            attributes: &[],
+            vertex_buffers: &[],
             format: FORMAT,
             depth: false,
         },

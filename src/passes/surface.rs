@@ -1,10 +1,13 @@
-//! Opaque meshes: the nearest surface of each pixel, lit locally.
+//! Meshes: the nearest surface of each pixel; opaque ones lit locally, translucent ones by what leaves their points.
 //!
-//! Reads vertices and instances; writes [`SurfaceTarget`], rgba32float, one texel a pixel: radiance and distance along the ray. Runs
+//! Reads vertices, instances and [`Radiosity`]; writes [`SurfaceTarget`], rgba32float, one texel a pixel: radiance and distance along the ray. Runs
 //! each frame in which a mesh is there; a driver without memory for the target fails it.
 
+use super::body::Body;
+use super::combine::Radiosity;
+use super::surface_points::SurfacePoints;
 use super::upload::MeshBuffers;
-use crate::components::{Phong, Placement, SceneSettings};
+use crate::components::{Phong, Placement, SceneSettings, Subsurface};
 use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, binding, uniform_each};
 use crate::render::Failure;
 use crate::view::{FrameBuffers, Picture, View, far_background, lights_module, to_eye};
@@ -14,7 +17,7 @@ use bevy_ecs::prelude::*;
 use encase::ShaderSize;
 use glam::{Mat4, Vec3};
 
-/// Draws opaque meshes.
+/// Draws meshes.
 pub(crate) struct SurfacePlugin;
 
 impl Plugin for SurfacePlugin {
@@ -27,8 +30,9 @@ impl Plugin for SurfacePlugin {
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct Surface {
-    /// The pipeline, and the number of lights it is made for.
-    draw: Option<(usize, Draw)>,
+    /// The pipelines, and the number of lights they are made for.
+    opaque: Option<(usize, Draw)>,
+    translucent: Option<(usize, Draw)>,
     targets: Option<Targets>,
 }
 
@@ -55,12 +59,31 @@ mirror! {
         shininess: f32,
         diffuse: Vec3,
         specular: Vec3,
+        eta: f32,
     }
 }
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
-type Meshes<'w, 's> = Query<'w, 's, (&'static MeshBuffers, &'static Placement, Option<&'static Phong>)>;
+type Meshes<'w, 's> = Query<
+    'w,
+    's,
+    (
+        &'static MeshBuffers,
+        &'static Placement,
+        Option<&'static Phong>,
+        Option<&'static Subsurface>,
+        Option<(&'static Body, &'static SurfacePoints, &'static Radiosity)>,
+    ),
+>;
+
+/// One mesh as it is drawn.
+struct Drawn<'a> {
+    mesh: &'a MeshBuffers,
+    /// What leaves each vertex, of a translucent mesh.
+    radiosity: Option<&'a wgpu::Buffer>,
+    instance: MeshInstance,
+}
 
 fn run(
     (gpu, frame, view, picture, settings): (
@@ -100,56 +123,43 @@ fn draw(
     report: &mut Report,
 ) -> Result<(), GpuError> {
     resize(gpu, surface, picture, report)?;
-    let instances: Vec<MeshInstance> =
-        meshes.iter().map(|(_, placement, phong)| instance(view, placement, phong)).collect();
+    let mut drawn: Vec<Drawn> = meshes.iter().map(|mesh| draw_of(view, mesh)).collect();
+    drawn.sort_by_key(|mesh| mesh.radiosity.is_some());
+    let is_translucent = |mesh: &Drawn| mesh.radiosity.is_some();
     let capacity = frame.light_capacity;
-    if surface.draw.as_ref().is_none_or(|(made_for, _)| *made_for != capacity) && !instances.is_empty() {
-        surface.draw = Some((capacity, make(gpu, capacity)?));
-        report.pipelines.push("surface");
+    if drawn.iter().any(|mesh| !is_translucent(mesh)) {
+        make(gpu, &mut surface.opaque, capacity, false, report)?;
+    }
+    if drawn.iter().any(is_translucent) {
+        make(gpu, &mut surface.translucent, capacity, true, report)?;
     }
     let Some(targets) = &surface.targets else { return Ok(()) };
+    let instances: Vec<MeshInstance> = drawn.iter().map(|mesh| mesh.instance.clone()).collect();
     let (instance_buffer, stride) = uniform_each(gpu, "mesh instances", &instances);
     let background = far_background(settings);
     let mut encoder =
         gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("surface") });
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("surface"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &targets.colour.view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(clear_colour(background)),
-                store: wgpu::StoreOp::Store,
-            },
-        })],
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &targets.depth.view,
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(0.0),
-                store: wgpu::StoreOp::Discard,
-            }),
-            stencil_ops: None,
-        }),
-        timestamp_writes: timing,
-        ..Default::default()
-    });
+    let clear = clear_colour(background);
+    let mut pass = targets.colour.begin(&mut encoder, "surface", clear, &targets.depth, timing);
+    let one = std::num::NonZeroU64::new(MeshInstance::SHADER_SIZE.get());
+    let instance = wgpu::BufferBinding { buffer: &instance_buffer, offset: 0, size: one };
+    let resources = [
+        frame.frame.as_entire_binding(),
+        frame.lights.as_entire_binding(),
+        wgpu::BindingResource::Buffer(instance),
+    ];
     let mut triangles = 0;
-    if let Some((_, draw)) = surface.draw.as_ref().filter(|_| !instances.is_empty()) {
-        let one = std::num::NonZeroU64::new(MeshInstance::SHADER_SIZE.get());
-        let instance = wgpu::BufferBinding { buffer: &instance_buffer, offset: 0, size: one };
-        let resources = [
-            frame.frame.as_entire_binding(),
-            frame.lights.as_entire_binding(),
-            wgpu::BindingResource::Buffer(instance),
-        ];
+    for (pipeline, translucent) in [(&surface.opaque, false), (&surface.translucent, true)] {
+        let mut own = drawn.iter().enumerate().filter(|(_, mesh)| is_translucent(mesh) == translucent).peekable();
+        let (Some((_, draw)), Some(_)) = (pipeline, own.peek()) else { continue };
         let bind_group = draw.bind(gpu, &resources);
-        for (index, (mesh, ..)) in meshes.iter().enumerate() {
+        for (index, mesh) in own {
             draw.begin(&mut pass, &bind_group, &[index as u32 * stride]);
-            pass.set_vertex_buffer(0, mesh.vertices.slice(..));
-            pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..mesh.index_count, 0, 0..1);
-            triangles += u64::from(mesh.index_count / 3);
+            if let Some(radiosity) = mesh.radiosity {
+                pass.set_vertex_buffer(1, radiosity.slice(..));
+            }
+            mesh.mesh.draw(&mut pass);
+            triangles += u64::from(mesh.mesh.index_count / 3);
         }
     }
     drop(pass);
@@ -161,19 +171,35 @@ fn draw(
     Ok(())
 }
 
-fn make(gpu: &Gpu, light_capacity: usize) -> Result<Draw, GpuError> {
-    Draw::new(
-        gpu,
-        &DrawDescriptor {
-            name: "surface",
-            generated: &[lights_module(light_capacity)],
-            entry_points: ("transform", "shade"),
-            bindings: &[binding::UNIFORM, binding::UNIFORM, binding::UNIFORM_EACH],
-            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3],
-            format: FORMAT,
-            depth: true,
-        },
-    )
+/// Makes a pipeline, unless the one that is there serves.
+fn make(
+    gpu: &Gpu,
+    pipeline: &mut Option<(usize, Draw)>,
+    light_capacity: usize,
+    translucent: bool,
+    report: &mut Report,
+) -> Result<(), GpuError> {
+    if pipeline.as_ref().is_some_and(|(made_for, _)| *made_for == light_capacity) {
+        return Ok(());
+    }
+    let vertices = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
+    let radiosity = wgpu::vertex_attr_array![2 => Float32x4];
+    let (entry_points, vertex_buffers): (_, &[&[wgpu::VertexAttribute]]) = match translucent {
+        false => (("transform", "shade"), &[&vertices]),
+        true => (("transform_translucent", "shade_translucent"), &[&vertices, &radiosity]),
+    };
+    let descriptor = DrawDescriptor {
+        name: "surface",
+        generated: &[lights_module(light_capacity)],
+        entry_points,
+        bindings: &[binding::UNIFORM, binding::UNIFORM, binding::UNIFORM_EACH],
+        vertex_buffers,
+        format: FORMAT,
+        depth: true,
+    };
+    *pipeline = Some((light_capacity, Draw::new(gpu, &descriptor)?));
+    report.pipelines.push("surface");
+    Ok(())
 }
 
 fn resize(gpu: &Gpu, surface: &mut Surface, picture: &Picture, report: &mut Report) -> Result<(), GpuError> {
@@ -188,9 +214,32 @@ fn resize(gpu: &Gpu, surface: &mut Surface, picture: &Picture, report: &mut Repo
     Ok(())
 }
 
-fn instance(view: &View, placement: &Placement, phong: Option<&Phong>) -> MeshInstance {
+fn draw_of<'a>(
+    view: &View,
+    (mesh, placement, phong, subsurface, scattered): (
+        &'a MeshBuffers,
+        &Placement,
+        Option<&Phong>,
+        Option<&Subsurface>,
+        Option<(&Body, &'a SurfacePoints, &'a Radiosity)>,
+    ),
+) -> Drawn<'a> {
+    // The local model beside a scattering technique counts for more than a `Phong` of the entity.
+    let phong = subsurface.map(|subsurface| &subsurface.local).or(phong).cloned().unwrap_or_default();
+    let mut instance = instance(view, placement, &phong);
+    let (Some((_, points, radiosity)), Some(subsurface)) = (scattered, subsurface) else {
+        return Drawn { mesh, radiosity: None, instance };
+    };
+    let specular = subsurface.specular.as_ref();
+    instance.specular = Vec3::splat(specular.map_or(0.0, |specular| specular.strength));
+    instance.shininess = specular.map_or(0.0, |specular| specular.shininess);
+    instance.eta = subsurface.material.coefficients().map_or(1.0, |channels| channels[0].eta as f32);
+    Drawn { mesh: &points.mesh, radiosity: Some(&radiosity.points), instance }
+}
+
+fn instance(view: &View, placement: &Placement, phong: &Phong) -> MeshInstance {
     let (eye_from_mesh, normals) = to_eye(view, placement.0);
-    let Phong { ambient, diffuse, specular, shininess } = phong.cloned().unwrap_or_default();
+    let Phong { ambient, diffuse, specular, shininess } = phong.clone();
     MeshInstance {
         eye_from_mesh: glam::DMat4::from(eye_from_mesh).as_mat4(),
         eye_from_mesh_normal: normals.as_mat4(),
@@ -198,6 +247,7 @@ fn instance(view: &View, placement: &Placement, phong: Option<&Phong>) -> MeshIn
         shininess,
         diffuse,
         specular,
+        eta: 1.0,
     }
 }
 

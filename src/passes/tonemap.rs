@@ -69,7 +69,7 @@ fn draw(
                 generated: &[],
                 entry_points: ("cover", "encode"),
                 bindings: &[binding::UNIFORM, binding::TEXTURE],
-                attributes: &[],
+                vertex_buffers: &[],
                 format: FORMAT,
                 depth: false,
             },

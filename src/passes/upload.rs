@@ -1,6 +1,7 @@
 //! What was read goes to the GPU, once, and is let go of on the processor.
 
 use crate::gpu::{Gpu, VolumeFormat};
+use crate::components::Subsurface;
 use crate::loading::{LoadedMesh, LoadedVolume};
 use crate::scene::{Problem, Problems};
 use crate::sources::{MeshData, Samples};
@@ -29,7 +30,7 @@ impl Plugin for VolumeUploadPlugin {
 }
 
 /// A mesh on the GPU: position and normal of each vertex, interleaved, six 32-bit floats.
-#[derive(Component, Debug)]
+#[derive(Component, Clone, Debug, PartialEq)]
 pub(crate) struct MeshBuffers {
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
@@ -37,7 +38,34 @@ pub(crate) struct MeshBuffers {
 }
 
 impl MeshBuffers {
-    fn bytes(&self) -> u64 {
+    /// Uploads a mesh.
+    pub fn new(gpu: &Gpu, data: &MeshData) -> Self {
+        let vertices: Vec<[[f32; 3]; 2]> = data
+            .positions
+            .iter()
+            .zip(&data.normals)
+            .map(|(position, normal)| [position.to_array(), normal.to_array()])
+            .collect();
+        let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE;
+        Self {
+            vertices: buffer(gpu, "vertices", bytemuck::cast_slice(&vertices), usage),
+            indices: buffer(gpu, "indices", bytemuck::cast_slice(&data.triangles), wgpu::BufferUsages::INDEX),
+            index_count: 3 * data.triangles.len() as u32,
+        }
+    }
+
+    /// Draws all triangles, with the vertices in slot 0.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass) {
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..self.index_count, 0, 0..1);
+    }
+
+    /// Bytes of a vertex.
+    const VERTEX: u64 = 24;
+
+    /// Bytes that both buffers hold.
+    pub fn bytes(&self) -> u64 {
         self.vertices.size() + self.indices.size()
     }
 }
@@ -59,32 +87,23 @@ pub(crate) const SENTINEL_THRESHOLD: f32 = 2.0e30;
 fn upload_meshes(
     mut commands: Commands,
     gpu: Res<Gpu>,
-    mut meshes: Query<(Entity, &mut LoadedMesh), Changed<LoadedMesh>>,
+    mut meshes: Query<(Entity, &mut LoadedMesh, Has<Subsurface>), Changed<LoadedMesh>>,
     all: Query<&MeshBuffers>,
     (mut problems, mut report): (ResMut<Problems>, ResMut<Report>),
 ) {
     let limit = gpu.device.limits().max_buffer_size;
     let mut added = 0;
-    for (entity, mut mesh) in &mut meshes {
-        let Some(data) = mesh.bypass_change_detection().data.take() else { continue };
-        let vertices: Vec<[[f32; 3]; 2]> = data
-            .positions
-            .iter()
-            .zip(&data.normals)
-            .map(|(position, normal)| [position.to_array(), normal.to_array()])
-            .collect();
-        let (vertex_bytes, index_bytes) =
-            (bytemuck::cast_slice(&vertices), bytemuck::cast_slice(&data.triangles));
-        let largest = <[u8]>::len(vertex_bytes).max(<[u8]>::len(index_bytes)) as u64;
+    for (entity, mut mesh, scatters) in &mut meshes {
+        let kept = &mut mesh.bypass_change_detection().data;
+        // What scatters is refined from here when the picture or the medium calls for it.
+        let Some(data) = (if scatters { kept.clone() } else { kept.take() }) else { continue };
+        let (vertices, triangles) = (data.positions.len() as u64, data.triangles.len() as u64);
+        let largest = (vertices * MeshBuffers::VERTEX).max(triangles * 12);
         if largest > limit {
             problems.0.push(mesh_too_large(&data, largest, limit).on(entity, "Mesh"));
             continue;
         }
-        let buffers = MeshBuffers {
-            vertices: buffer(&gpu, "vertices", vertex_bytes, wgpu::BufferUsages::VERTEX),
-            indices: buffer(&gpu, "indices", index_bytes, wgpu::BufferUsages::INDEX),
-            index_count: 3 * data.triangles.len() as u32,
-        };
+        let buffers = MeshBuffers::new(&gpu, &data);
         added += buffers.bytes();
         report.ran("upload_meshes", &[("triangles", data.triangles.len() as u64)]);
         commands.entity(entity).insert(buffers);

@@ -2,6 +2,7 @@
 
 mod assemble;
 mod normals;
+mod refine;
 mod statistics;
 
 use glam::Vec3;

@@ -1,0 +1,31 @@
+// What the light that entered a translucent body elsewhere sends out of it, point by point: M_o, for each point a sum over samples of
+// the lit surface (see estimator). The radiance that leaves in the direction omega_o is T(eta, omega_o) M_o.
+//
+// reads  points (vertices of the refined mesh), the light G-buffer
+// writes one vec4f a point: mean over all sets of samples so far of M_o for the light's irradiance (or per unit of it)
+
+#import estimator
+
+@group(0) @binding(0) var<uniform> medium: Medium;
+@group(0) @binding(1) var<uniform> estimator: Estimator;
+@group(0) @binding(2) var light_gbuffer: texture_2d<f32>;
+// Position and normal of each vertex, in mesh space.
+@group(0) @binding(3) var<storage, read> vertices: array<f32>;
+@group(0) @binding(4) var<storage, read_write> radiosity: array<vec4f>;
+
+@compute @workgroup_size(64)
+fn at_vertices(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let index = id.x + id.y * groups.x * 64u;
+    if index >= estimator.points {
+        return;
+    }
+    let at = 6u * index;
+    let position = vec3f(vertices[at], vertices[at + 1u], vertices[at + 2u]);
+    let normal = vec3f(vertices[at + 3u], vertices[at + 4u], vertices[at + 5u]);
+    let x_o = (estimator.light_from_mesh * vec4f(position, 1.0)).xyz;
+    let n_o = normalize((estimator.light_from_mesh_normal * vec4f(normal, 0.0)).xyz);
+    let new = estimator.irradiance * scattered(medium, x_o, n_o, index);
+    let place = estimator.first + index;
+    let before = select(radiosity[place].xyz, vec3f(0.0), estimator.pass_index == 0u);
+    radiosity[place] = vec4f(mix(before, new, 1.0 / f32(estimator.pass_index + 1u)), 1.0);
+}

@@ -1,0 +1,81 @@
+//! A kernel: one compute shader, one bind group.
+
+use super::{Gpu, GpuError, shader};
+
+/// A compute pipeline and the layout of its bind group 0.
+#[derive(Debug)]
+pub struct Kernel {
+    label: &'static str,
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+/// What a [`Kernel`] is made of.
+pub struct KernelDescriptor<'a> {
+    /// Stem of the shader file, and label.
+    pub name: &'static str,
+    /// Modules of the shader made for this use.
+    pub generated: &'a [(&'a str, String)],
+    /// The compute entry point.
+    pub entry_point: &'a str,
+    /// What is bound, in the order of the bindings from 0.
+    pub bindings: &'a [wgpu::BindingType],
+}
+
+impl Kernel {
+    /// Compiles the shader and makes the pipeline.
+    pub fn new(gpu: &Gpu, descriptor: &KernelDescriptor) -> Result<Self, GpuError> {
+        let module = shader::module(gpu, descriptor.name, descriptor.generated)?;
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let visibility = wgpu::ShaderStages::COMPUTE;
+        let entry =
+            |(index, ty): (usize, &wgpu::BindingType)| super::draw::layout_entry(index, *ty, visibility);
+        let entries: Vec<_> = descriptor.bindings.iter().enumerate().map(entry).collect();
+        let label = Some(descriptor.name);
+        let layout = gpu
+            .device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
+        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label,
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label,
+            layout: Some(&pipeline_layout),
+            module: &module,
+            entry_point: Some(descriptor.entry_point),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        match pollster::block_on(scope.pop()) {
+            Some(error) => Err(GpuError::Shader(format!("{}.wgsl", descriptor.name), error.to_string())),
+            None => Ok(Self { label: descriptor.name, pipeline, layout }),
+        }
+    }
+
+    /// Invocations of a workgroup, in a row: what every kernel declares.
+    pub const WORKGROUP: u32 = 64;
+
+    /// Runs at least `invocations` of the kernel on these resources, bound in order.
+    pub fn run(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        resources: &[wgpu::BindingResource],
+        invocations: u32,
+        timing: Option<wgpu::ComputePassTimestampWrites>,
+    ) {
+        let bind_group = super::draw::bind(gpu, self.label, &self.layout, resources);
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(self.label),
+            timestamp_writes: timing,
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &bind_group, &[]);
+        // No dimension may have more than 65,535 workgroups.
+        let groups = invocations.div_ceil(Self::WORKGROUP);
+        let across = groups.clamp(1, 32_768);
+        pass.dispatch_workgroups(across, groups.div_ceil(across), 1);
+    }
+}

@@ -1,0 +1,88 @@
+//! A medium, as the dipoles of `shaders/shared/bssrdf.wgsl` want it.
+
+use crate::components::{DipoleModel, Subsurface};
+use crate::mirrors::mirror;
+use crate::optics::calibration::{Calibration, calibration};
+use crate::optics::dipole::{StandardDipole};
+use crate::optics::materials::Coefficients;
+use crate::optics::medium::Medium;
+use crate::optics::moments::Boundary;
+use glam::{DVec3, Vec3};
+
+mirror! {
+    /// Mirror of `Medium` in `shaders/shared/bssrdf.wgsl`.
+    "scattered_radiosity":
+    #[derive(PartialEq)]
+    pub(crate) struct MediumUniform as "Medium" {
+        sigma_t_prime: Vec3,
+        eta: f32,
+        mu: Vec3,
+        c_phi: f32,
+        d_e: Vec3,
+        c_e: f32,
+        virtual_distance: Vec3,
+        least_distance: f32,
+        behind: Vec3,
+        strength: Vec3,
+        calibration_0: Vec3,
+        calibration_1: Vec3,
+        calibration_2: Vec3,
+    }
+}
+
+/// The least distance to the real source, in mean free paths. The published model has none, and shines without bound where a lit surface
+/// meets one that faces away from it (mu_0 = 0); on a plane this changes nothing up to 75 degrees of incidence.
+const LEAST_DISTANCE: f64 = 1.0 / 12.0;
+
+impl MediumUniform {
+    /// The medium of a body, of which a unit of length has so many millimetres. `None` where its material has no meaning.
+    pub fn new(subsurface: &Subsurface, millimetres: f64) -> Option<Self> {
+        let channels = subsurface.material.coefficients()?;
+        Some(Self::of(&channels.map(|channel| medium(&channel)), subsurface.model, LEAST_DISTANCE, millimetres))
+    }
+
+    /// Lengths of `media` are millimetres; those of the result are as many of them as `millimetres` says.
+    pub fn of(media: &[Medium; 3], model: DipoleModel, least_distance: f64, millimetres: f64) -> Self {
+        let calibrated = media.map(|medium| match model {
+            DipoleModel::CalibratedDipole => calibration(&medium),
+            DipoleModel::DirectionalDipole | DipoleModel::StandardDipole => Calibration([1.0, 0.0, 0.0]),
+        });
+        let diffusion = media.map(|medium| medium.diffusion());
+        let boundary = Boundary::exact(media[0].eta);
+        let per_channel = |value: &dyn Fn(usize) -> f64| DVec3::from(std::array::from_fn(value)).as_vec3();
+        let standard = model == DipoleModel::StandardDipole;
+        let pi = std::f64::consts::PI;
+        Self {
+            sigma_t_prime: per_channel(&|c| diffusion[c].sigma_t_prime * millimetres),
+            eta: boundary.eta as f32,
+            mu: per_channel(&|c| (3.0 * diffusion[c].one_minus_albedo_prime).sqrt()),
+            c_phi: boundary.c_phi as f32,
+            d_e: per_channel(&|c| diffusion[c].d_e * diffusion[c].sigma_t_prime),
+            c_e: boundary.c_e as f32,
+            virtual_distance: per_channel(&|c| match standard {
+                true => StandardDipole::new(diffusion[c], boundary.eta).z_v * diffusion[c].sigma_t_prime,
+                false => 2.0 * boundary.a * diffusion[c].d_e * diffusion[c].sigma_t_prime,
+            }),
+            least_distance: (least_distance * least_distance) as f32,
+            behind: per_channel(&|c| (diffusion[c].sigma_t_prime / (3.0 * diffusion[c].sigma_t)).powi(2)),
+            strength: per_channel(&|c| {
+                let area = (diffusion[c].sigma_t_prime * millimetres).powi(2);
+                match (diffusion[c].sigma_s_prime > 0.0, standard) {
+                    (false, _) => 0.0,
+                    // Over 4 C_phi(1/eta), so that what leaves in all directions adds up to R_d.
+                    (_, true) => area * diffusion[c].albedo_prime / (16.0 * pi * pi * boundary.c_phi_inverse),
+                    (_, false) => area / (16.0 * pi * pi * boundary.c_phi_inverse),
+                }
+            }),
+            calibration_0: per_channel(&|c| calibrated[c].0[0]),
+            calibration_1: per_channel(&|c| calibrated[c].0[1]),
+            calibration_2: per_channel(&|c| calibrated[c].0[2]),
+        }
+    }
+}
+
+/// The medium of one channel, lengths in millimetres.
+fn medium(coefficients: &Coefficients) -> Medium {
+    let Coefficients { sigma_a, sigma_s, g, eta } = *coefficients;
+    Medium { sigma_a, sigma_s, g, eta }
+}

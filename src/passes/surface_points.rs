@@ -1,0 +1,104 @@
+//! The points of a translucent mesh at which the light that leaves it is computed: its vertices, and as many between them as the medium
+//! and the picture call for.
+
+use super::body::Body;
+use super::upload::MeshBuffers;
+use crate::components::{Projection, Subsurface};
+use crate::gpu::Gpu;
+use crate::loading::LoadedMesh;
+use crate::view::{Picture, View};
+use crate::report::Report;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// The refined mesh on the GPU. Between its vertices the light that leaves is interpolated.
+#[derive(Component, Debug)]
+pub(crate) struct SurfacePoints {
+    pub mesh: MeshBuffers,
+    /// How many there are.
+    pub count: u32,
+    /// The longest edge allowed when it was made, in body space.
+    spacing: f64,
+    /// What it was made from.
+    source: MeshBuffers,
+}
+
+/// The most points of one mesh.
+const MOST_POINTS: usize = 1 << 20;
+
+/// Edges are at most this many pixels long.
+const PIXELS: f64 = 2.5;
+
+/// Edges are at least, and at most, this share of the body's radius.
+const SHARES: (f64, f64) = (1.0 / 1024.0, 1.0 / 16.0);
+
+/// Points are made anew when they are to be finer by this factor, so that a small step of the camera changes nothing.
+const HYSTERESIS: f64 = 1.5;
+
+type Refinable<'a> =
+    (Entity, Ref<'a, LoadedMesh>, &'a MeshBuffers, &'a Body, &'a Subsurface, Option<&'a SurfacePoints>);
+
+/// Refines the meshes that scatter where that is called for.
+pub(crate) fn refine(
+    mut commands: Commands,
+    gpu: Res<Gpu>,
+    (view, picture): (Res<View>, Res<Picture>),
+    meshes: Query<Refinable>,
+    former: Query<Entity, (With<SurfacePoints>, Without<Body>)>,
+    mut report: ResMut<Report>,
+) {
+    for entity in &former {
+        commands.entity(entity).remove::<SurfacePoints>();
+    }
+    let mut held = 0;
+    for (entity, mesh, buffers, body, subsurface, points) in &meshes {
+        let spacing = spacing(&view, &picture, body, subsurface);
+        let current = points.filter(|points| points.source == *buffers && spacing * HYSTERESIS >= points.spacing);
+        if let Some(points) = current {
+            held += points.bytes();
+            continue;
+        }
+        let Some(data) = &mesh.data else { continue };
+        let (refined, _) = data.refined(body.body_from_mesh.matrix3, spacing, MOST_POINTS);
+        let is_same = refined.positions.len() == data.positions.len();
+        let mesh = if is_same { buffers.clone() } else { MeshBuffers::new(&gpu, &refined) };
+        let points =
+            SurfacePoints { mesh, count: refined.positions.len() as u32, spacing, source: buffers.clone() };
+        held += points.bytes();
+        report.ran("surface_points", &[("points", u64::from(points.count))]);
+        commands.entity(entity).insert(points);
+    }
+    report.hold("surface points", held);
+}
+
+impl SurfacePoints {
+    fn bytes(&self) -> u64 {
+        if self.mesh == self.source { 0 } else { self.mesh.bytes() }
+    }
+}
+
+/// How long edges may be, in body space: half a mean free path, over which the light that leaves cannot change much, but no finer than
+/// the picture shows.
+fn spacing(view: &View, picture: &Picture, body: &Body, subsurface: &Subsurface) -> f64 {
+    let mean_free_path = subsurface.material.coefficients().map_or(f64::INFINITY, |channels| {
+        channels.iter().map(|channel| channel.mean_free_path()).fold(f64::INFINITY, f64::min) / body.millimetres
+    });
+    let pixel = PIXELS * pixel(view, picture, body);
+    (mean_free_path / 2.0).max(pixel).clamp(SHARES.0, SHARES.1)
+}
+
+/// What a pixel covers where the body is nearest to the camera, in body space.
+fn pixel(view: &View, picture: &Picture, body: &Body) -> f64 {
+    let half_extent = view.half_extent(picture.size);
+    let eye_from_body = view.eye_from_scene * body.body_from_scene.inverse();
+    let radius = eye_from_body.transform_vector3(DVec3::X).length();
+    let size = match view.projection {
+        // In units of the distance.
+        Projection::Perspective { .. } => {
+            let distance = eye_from_body.translation.length() - radius;
+            distance.max(0.1 * radius)
+        }
+        Projection::Orthographic { .. } => 1.0,
+    };
+    2.0 * f64::from(half_extent.y) / f64::from(picture.size.y) * size / radius
+}
