@@ -24,8 +24,8 @@ fn at_vertices(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
     let normal = vec3f(vertices[at + 3u], vertices[at + 4u], vertices[at + 5u]);
     let x_o = (estimator.light_from_mesh * vec4f(position, 1.0)).xyz;
     let n_o = normalize((estimator.light_from_mesh_normal * vec4f(normal, 0.0)).xyz);
-    let new = estimator.irradiance * scattered(medium, x_o, n_o, index);
+    let now = estimator.irradiance * scattered(medium, x_o, n_o, index);
     let place = estimator.first + index;
     let before = select(radiosity[place].xyz, vec3f(0.0), estimator.pass_index == 0u);
-    radiosity[place] = vec4f(mix(before, new, 1.0 / f32(estimator.pass_index + 1u)), 1.0);
+    radiosity[place] = vec4f(mix(before, now, 1.0 / f32(estimator.pass_index + 1u)), 1.0);
 }

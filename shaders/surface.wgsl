@@ -33,11 +33,15 @@ struct Varyings {
     @location(1) normal_in_eye: vec3f,
 }
 
-@vertex
-fn transform(@location(0) position: vec3f, @location(1) normal: vec3f) -> Varyings {
+fn transformed(position: vec3f, normal: vec3f) -> Varyings {
     let position_in_eye = (mesh.eye_from_mesh * vec4f(position, 1.0)).xyz;
     let normal_in_eye = (mesh.eye_from_mesh_normal * vec4f(normal, 0.0)).xyz;
     return Varyings(frame.clip_from_eye * vec4f(position_in_eye, 1.0), position_in_eye, normal_in_eye);
+}
+
+@vertex
+fn transform(@location(0) position: vec3f, @location(1) normal: vec3f) -> Varyings {
+    return transformed(position, normal);
 }
 
 struct Seen {
@@ -88,7 +92,7 @@ fn transform_translucent(
     @location(1) normal: vec3f,
     @location(2) radiosity: vec4f,
 ) -> TranslucentVaryings {
-    let out = transform(position, normal);
+    let out = transformed(position, normal);
     return TranslucentVaryings(out.position_in_clip, out.position_in_eye, out.normal_in_eye, radiosity.xyz);
 }
 

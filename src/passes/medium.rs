@@ -3,7 +3,7 @@
 use crate::components::{DipoleModel, Subsurface};
 use crate::mirrors::mirror;
 use crate::optics::calibration::{Calibration, calibration};
-use crate::optics::dipole::{StandardDipole};
+use crate::optics::dipole::StandardDipole;
 use crate::optics::materials::Coefficients;
 use crate::optics::medium::Medium;
 use crate::optics::moments::Boundary;
@@ -11,8 +11,8 @@ use glam::{DVec3, Vec3};
 
 mirror! {
     /// Mirror of `Medium` in `shaders/shared/bssrdf.wgsl`.
-    "scattered_radiosity":
     #[derive(PartialEq)]
+    "scattered_radiosity":
     pub(crate) struct MediumUniform as "Medium" {
         sigma_t_prime: Vec3,
         eta: f32,
@@ -60,7 +60,8 @@ impl MediumUniform {
             d_e: per_channel(&|c| diffusion[c].d_e * diffusion[c].sigma_t_prime),
             c_e: boundary.c_e as f32,
             virtual_distance: per_channel(&|c| match standard {
-                true => StandardDipole::new(diffusion[c], boundary.eta).z_v * diffusion[c].sigma_t_prime,
+                // z_v = z_r + 4 A D.
+                true => 1.0 + 4.0 / 3.0 * StandardDipole::new(&media[c]).a,
                 false => 2.0 * boundary.a * diffusion[c].d_e * diffusion[c].sigma_t_prime,
             }),
             least_distance: (least_distance * least_distance) as f32,
@@ -82,7 +83,7 @@ impl MediumUniform {
 }
 
 /// The medium of one channel, lengths in millimetres.
-fn medium(coefficients: &Coefficients) -> Medium {
+pub(crate) fn medium(coefficients: &Coefficients) -> Medium {
     let Coefficients { sigma_a, sigma_s, g, eta } = *coefficients;
     Medium { sigma_a, sigma_s, g, eta }
 }

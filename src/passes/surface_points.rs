@@ -2,6 +2,7 @@
 //! and the picture call for.
 
 use super::body::Body;
+use super::medium::medium;
 use super::upload::MeshBuffers;
 use crate::components::{Projection, Subsurface};
 use crate::gpu::Gpu;
@@ -81,7 +82,7 @@ impl SurfacePoints {
 /// the picture shows.
 fn spacing(view: &View, picture: &Picture, body: &Body, subsurface: &Subsurface) -> f64 {
     let mean_free_path = subsurface.material.coefficients().map_or(f64::INFINITY, |channels| {
-        channels.iter().map(|channel| channel.mean_free_path()).fold(f64::INFINITY, f64::min) / body.millimetres
+        channels.iter().map(|channel| medium(channel).diffusion().sigma_t_prime.recip()).fold(f64::INFINITY, f64::min) / body.millimetres
     });
     let pixel = PIXELS * pixel(view, picture, body);
     (mean_free_path / 2.0).max(pixel).clamp(SHARES.0, SHARES.1)

@@ -1,7 +1,7 @@
 //! A mesh with more triangles, the same surface.
 
 use super::{MeshData, normals};
-use glam::{DMat3, Vec3};
+use glam::DMat3;
 use std::collections::HashMap;
 
 /// Vertices per area of a triangulation with edges about as long as 1: halving edges leaves them between a half and 1.
@@ -60,7 +60,7 @@ impl MeshData {
     }
 
     fn area(&self, scale: DMat3, triangle: &[u32; 3]) -> f64 {
-        let [a, b, c] = triangle.map(|index| scale * Vec3::as_dvec3(&self.positions[index as usize]));
+        let [a, b, c] = triangle.map(|index| scale * self.positions[index as usize].as_dvec3());
         (b - a).cross(c - a).length() / 2.0
     }
 }
