@@ -3,6 +3,7 @@
 //! Scattering is in `f64` and in any unit of length, as long as all lengths of a call share it. Directions of light and of the viewer
 //! point away from the surface; refracted directions point into the medium; `eta` is the index inside over the index outside.
 
+pub mod calibration;
 pub mod dipole;
 pub mod fresnel;
 pub mod medium;
@@ -11,3 +12,4 @@ pub mod phase;
 mod quadrature;
 pub mod sampling;
 pub mod transfer;
+pub mod transport;
