@@ -6,6 +6,7 @@ use super::names::{nearest_file, suggestion};
 use super::parts::{Named, Part};
 use super::problem::{Place, Problem, Severity, SourceFile};
 use super::reader::Reader;
+use super::references::references;
 use crate::components::{AssetPath, SceneSettings};
 use bevy_ecs::reflect::ReflectComponent;
 use bevy_reflect::{Reflect, TypeInfo, TypeRegistration, TypeRegistry, structs::Struct};
@@ -110,6 +111,7 @@ impl SceneDocument {
                 Err(problem) => document.problems.push(*problem),
             }
         }
+        document.problems.extend(references(&document));
         if !document.has_errors() {
             document.problems.extend(advice(&document));
         }

@@ -1,10 +1,11 @@
 //! RON parts become reflected values, by the types that the registry knows.
 
-use super::names::suggestion;
+use super::names::{nearest, suggestion};
 use super::parts::{Misfit, Named, Part, Payload, Shape};
 use super::problem::{Place, Problem, SourceFile};
 use super::wanted::{excerpt, how_to_write, is_plain, numbers, wanted};
-use crate::components::{AssetPath, Range, ReflectValidate, Required, Untagged};
+use crate::components::{AssetPath, Names, Range, ReflectValidate, Required, Untagged};
+use bevy_reflect::attributes::CustomAttributes;
 use bevy_reflect::enums::{DynamicEnum, DynamicVariant, EnumInfo, VariantInfo};
 use bevy_reflect::list::DynamicList;
 use bevy_reflect::serde::TypedReflectDeserializer;
@@ -167,7 +168,7 @@ impl<'r> Reader<'r> {
         if let Some(path) = value.try_downcast_mut::<AssetPath>() {
             path.resolve(self.file.path().parent().unwrap_or(Path::new("")));
         }
-        for number in numbers(value.as_ref()) {
+        for (number, digits) in numbers(value.as_ref()) {
             let range = range.copied().unwrap_or(Range::new(f64::MIN, f64::MAX));
             if !number.is_finite() || !range.contains(number) {
                 let bounds = if range.max == f64::MAX && range.min == f64::MIN {
@@ -176,7 +177,7 @@ impl<'r> Reader<'r> {
                     range.to_string()
                 };
                 // What does not fit into 32 bits reads as infinite; the text says what was meant.
-                let found = if number.is_finite() { number.to_string() } else { excerpt(part.text) };
+                let found = if number.is_finite() { digits } else { excerpt(part.text) };
                 let message = format!("{} must be {bounds}, found `{found}`", self.name());
                 self.report(part, Problem::error(message).label("out of range"));
                 return None;
@@ -213,7 +214,7 @@ impl<'r> Reader<'r> {
             }
             seen.push((field.name(), self.place(name)));
             if let Some(value) = self.within(&format!(".{}", field.name()), |reader| {
-                reader.typed(value, field.type_id(), field.get_attribute::<Range>())
+                reader.field(value, field.type_id(), field.custom_attributes())
             }) {
                 read.insert_boxed(field.name(), value);
             }
@@ -299,7 +300,11 @@ impl<'r> Reader<'r> {
             let at = word.unwrap_or(*part);
             let message = format!("`{}` is no kind of {}", excerpt(at.text), self.name());
             let problem = Problem::error(message).label("unknown");
-            self.report(&at, problem.help(suggestion(at.text, info.variant_names())));
+            let help = match word {
+                Some(word) => suggestion(word.text, info.variant_names()),
+                None => format!("write {}", info.iter().map(how_to_write).collect::<Vec<_>>().join(" or ")),
+            };
+            self.report(&at, problem.help(help));
             return None;
         };
         let shape = match variant {
@@ -318,24 +323,22 @@ impl<'r> Reader<'r> {
             }
             _ => self.shaped(part, part.payload(shape), &how)?,
         };
-        let variant_value =
-            match (variant, payload) {
-                (VariantInfo::Struct(info), Payload::Fields(fields)) => {
-                    let known: Vec<_> = info.iter().collect();
-                    DynamicVariant::Struct(self.fields(part, fields, &known, variant.name()))
+        let variant_value = match (variant, payload) {
+            (VariantInfo::Struct(info), Payload::Fields(fields)) => {
+                let known: Vec<_> = info.iter().collect();
+                DynamicVariant::Struct(self.fields(part, fields, &known, variant.name()))
+            }
+            (VariantInfo::Tuple(info), Payload::Values(parts)) => {
+                let mut tuple = DynamicTuple::default();
+                for (index, (part, field)) in parts.iter().zip(info.iter()).enumerate() {
+                    tuple.insert_boxed(self.within(&format!(".{index}"), |reader| {
+                        reader.field(part, field.type_id(), field.custom_attributes())
+                    })?);
                 }
-                (VariantInfo::Tuple(info), Payload::Values(parts)) => {
-                    let mut tuple = DynamicTuple::default();
-                    for (index, (part, field)) in parts.iter().zip(info.iter()).enumerate() {
-                        let range = field.get_attribute::<Range>();
-                        tuple.insert_boxed(self.within(&format!(".{index}"), |reader| {
-                            reader.typed(part, field.type_id(), range)
-                        })?);
-                    }
-                    DynamicVariant::Tuple(tuple)
-                }
-                _ => DynamicVariant::Unit,
-            };
+                DynamicVariant::Tuple(tuple)
+            }
+            _ => DynamicVariant::Unit,
+        };
         Some(Box::new(enum_value(variant.name(), variant_value, registration)))
     }
 
@@ -393,6 +396,7 @@ impl<'r> Reader<'r> {
         Some(each.collect::<Option<Vec<_>>>()?.join(" or "))
     }
 
+    /// A value that may be absent: `None`, `Some(value)`, or the value itself.
     fn option(
         &mut self,
         part: &Part,
@@ -400,14 +404,40 @@ impl<'r> Reader<'r> {
         registration: &TypeRegistration,
         range: Option<&Range>,
     ) -> Value {
-        let inner = self.shaped(part, part.option(), "`Some(value)` or `None`")?;
+        let is_tagged = part
+            .word()
+            .is_some_and(|word| ["some", "none"].iter().any(|tag| tag.eq_ignore_ascii_case(word.text)));
+        let inner = match is_tagged {
+            true => self.shaped(part, part.option(), "`Some(value)` or `None`")?,
+            false => Some(*part),
+        };
         let Some(inner) = inner else {
             return Some(Box::new(enum_value("None", DynamicVariant::Unit, registration)));
         };
         let VariantInfo::Tuple(some) = info.variant("Some")? else { return None };
         let mut tuple = DynamicTuple::default();
+        let places = self.places.len();
         tuple.insert_boxed(self.typed(&inner, some.field_at(0)?.type_id(), range)?);
+        // The place of the whole stands for the path, so that what replaces it may be `None`.
+        self.places.remove(places);
         Some(Box::new(enum_value("Some", DynamicVariant::Tuple(tuple), registration)))
+    }
+
+    /// The value of a field, which must be what the field's attributes allow.
+    fn field(&mut self, part: &Part, ty: TypeId, attributes: &CustomAttributes) -> Value {
+        let value = self.typed(part, ty, attributes.get::<Range>())?;
+        if let Some(names) = attributes.get::<Names>()
+            && let Some(name) = value.try_downcast_ref::<String>()
+            && !names.contains(name)
+        {
+            let known = format!("known here: {}", names.known.join(", "));
+            let help = nearest(name, names.known.iter().copied())
+                .map_or(known.clone(), |near| format!("did you mean `{near}`? {known}"));
+            let problem = Problem::error(format!("there is no {} `{name}`", names.of)).label("unknown name");
+            self.report(part, problem.help(help));
+            return None;
+        }
+        Some(value)
     }
 
     fn typed(&mut self, part: &Part, ty: TypeId, range: Option<&Range>) -> Value {
