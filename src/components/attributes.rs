@@ -98,7 +98,7 @@ impl Names {
     }
 }
 
-/// Marks a field of a component that holds the name of another entity, one with the component that this names:
+/// Marks a field of a component that holds the name of another entity, for which the scene must write the component that this names:
 /// `#[reflect(@NameOf("Subsurface"))]`.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 pub struct NameOf(pub &'static str);

@@ -46,7 +46,9 @@ fn references_in(component: &SceneComponent) -> Vec<Reference<'_>> {
     let Some(TypeInfo::Struct(info)) = component.value.get_represented_type_info() else { return Vec::new() };
     let ReflectRef::Struct(fields) = component.value.reflect_ref() else { return Vec::new() };
     let reference = |(field, NameOf(having)): (&'static str, &NameOf)| {
-        let name = fields.field(field)?.try_downcast_ref::<String>()?;
+        let value = fields.field(field)?;
+        let optional = || value.try_downcast_ref::<Option<String>>().and_then(Option::as_ref);
+        let name = value.try_downcast_ref::<String>().or_else(optional)?;
         Some(Reference { component: &component.name, field, name, having })
     };
     let named = info.iter().filter_map(|field| Some((field.name(), field.get_attribute()?)));
