@@ -89,6 +89,6 @@ impl Plugin for ScenePlugin {
             .init_resource::<SceneTime>()
             .init_resource::<Report>()
             .init_resource::<render::Failure>()
-            .add_systems(Update, components::place.in_set(Stage::Place));
+            .add_systems(Update, (components::place, components::aim).in_set(Stage::Place));
     }
 }

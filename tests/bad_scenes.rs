@@ -7,7 +7,8 @@ use tyndall::render::{all_problems, load_scene};
 use tyndall::scene::{Problem, Severity};
 
 /// What is worth a note, but no error.
-const ONLY_NOTES: [&str; 3] = ["include_of_itself", "no_light", "nothing_to_see"];
+const ONLY_NOTES: [&str; 4] =
+    ["include_of_itself", "no_light", "nothing_to_see", "scattering_without_effect"];
 
 /// Reads a scene the way `tyndall check` does.
 fn check(scene: &Path) -> Vec<Problem> {

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper that cannot do its work fails the test")]
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tyndall::prelude::*;
@@ -77,7 +77,7 @@ fn has<T: Component>(app: &App, name: &str) -> bool {
 #[test]
 fn a_component_without_fields_is_its_default() {
     let app = Files::scene(
-        r#""all": ( Transform: (), ViewCamera: (), DirectionalLight: (), Phong: (), TransferFunction: (), RayCast: (), Turntable: () ),
+        r#""all": ( Transform: (), ViewCamera: (), DirectionalLight: (), Phong: (), TransferFunction: (), RayCast: (), Turntable: (), ScatteringMaps: () ),
         "ball": ( Mesh: Sphere() ), "bare": ( Mesh: Sphere, VolumeLighting: Gradient ), "lit": ( VolumeLighting: EmissionAbsorption, Shading: Scattering ),
         "eye": ( ViewCamera: (projection: Perspective()) ), "empty": ()"#,
     )
@@ -90,6 +90,7 @@ fn a_component_without_fields_is_its_default() {
     assert_eq!(get::<TransferFunction>(&app, "all"), TransferFunction::default());
     assert_eq!(get::<RayCast>(&app, "all"), RayCast::default());
     assert_eq!(get::<Turntable>(&app, "all"), Turntable::default());
+    assert_eq!(get::<ScatteringMaps>(&app, "all"), ScatteringMaps::default());
     assert_eq!(get::<Mesh>(&app, "ball"), Mesh::default());
     assert_eq!(get::<Mesh>(&app, "bare"), Mesh::default());
     let gradient = VolumeLighting::Gradient { ambient: 0.2, diffuse: 0.7, specular: 0.3, shininess: 16.0 };
@@ -174,13 +175,19 @@ fn the_tables_in_the_documentation_give_the_defaults() {
         ("directional_light.rs", "DirectionalLight"),
         ("phong.rs", "Phong"),
         ("ray_cast.rs", "RayCast"),
+        ("scattering_maps.rs", "ScatteringMaps"),
+        ("subsurface.rs", "Subsurface"),
         ("transform.rs", "Transform"),
         ("view_camera.rs", "ViewCamera"),
     ];
     for (file, component) in tables {
         let text = fs::read_to_string(folder.join(file)).unwrap();
-        let rows = text.lines().filter_map(|line| line.strip_prefix("/// | `"));
+        let own = text.split(&format!("pub struct {component} ")).next().unwrap();
+        let rows = own.lines().filter_map(|line| line.strip_prefix("/// | `"));
+        // The first table; another one may say more of the same fields.
+        let mut names = HashSet::new();
         let fields: Vec<String> = rows
+            .filter(|row| names.insert(row.split('`').next()))
             .map(|row| {
                 let cells: Vec<_> = row.trim_end_matches(" |").split(" | ").collect();
                 format!("{}: {}", cells[0].trim_end_matches('`'), cells[cells.len() - 1].trim_matches('`'))
@@ -200,9 +207,266 @@ fn debug(app: &mut App, name: &str, component: &str) -> String {
         "DirectionalLight" => format!("{:?}", get::<DirectionalLight>(app, name)),
         "Phong" => format!("{:?}", get::<Phong>(app, name)),
         "RayCast" => format!("{:?}", get::<RayCast>(app, name)),
+        "ScatteringMaps" => format!("{:?}", get::<ScatteringMaps>(app, name)),
+        "Subsurface" => format!("{:?}", get::<Subsurface>(app, name)),
         "Transform" => format!("{:?}", get::<Transform>(app, name)),
         _ => format!("{:?}", get::<ViewCamera>(app, name)),
     }
+}
+
+/// The medium of an entity: sigma_a and sigma_s of red, green and blue; g and eta of red.
+fn medium(app: &App, name: &str) -> ([[f64; 3]; 2], [f64; 2]) {
+    let medium = get::<Subsurface>(app, name).material.coefficients().unwrap();
+    ([medium.map(|one| one.sigma_a), medium.map(|one| one.sigma_s)], [medium[0].g, medium[0].eta])
+}
+
+#[test]
+fn a_medium_is_a_name_or_either_pair_of_coefficients() {
+    let app = Files::scene(
+        r#""default": ( Subsurface: () ), "marble": ( Subsurface: (material: Preset("Marble")) ),
+        "milk": ( Subsurface: (material: Preset("milk")) ),
+        "pair": ( Subsurface: (material: Custom(sigma_a: (0.5, 0.25, 0.0), sigma_s: (1, 2, 4))) ),
+        "share": ( Subsurface: (material: Custom(sigma_t: (2.0, 4.0, 1e12), albedo: (0.75, 0.0, 1.0), g: -0.5, eta: 1.5)) ),
+        "some": ( Subsurface: (material: Custom(sigma_a: Some((0.5, 0.25, 0.0)), sigma_s: Some((1, 2, 4)), sigma_t: None)) ),
+        "clear": ( Subsurface: (material: Custom(sigma_a: (0, 0, 0), sigma_s: (0, 0, 0), g: 0.999, eta: 0.5)) ),"#,
+    )
+    .load(&[]);
+    let marble = ([[0.0021, 0.0041, 0.0071], [2.19, 2.62, 3.0]], [0.0, 1.5]);
+    assert_eq!(medium(&app, "default"), marble);
+    assert_eq!(medium(&app, "marble"), marble);
+    assert_eq!(medium(&app, "milk").0[1], [2.55, 3.21, 3.77]);
+    let eta = f64::from(1.3_f32);
+    assert_eq!(medium(&app, "pair"), ([[0.5, 0.25, 0.0], [1.0, 2.0, 4.0]], [0.0, eta]));
+    let most = f64::from(1e12_f32);
+    assert_eq!(medium(&app, "share"), ([[0.5, 4.0, 0.0], [1.5, 0.0, most]], [-0.5, 1.5]));
+    assert_eq!(get::<Subsurface>(&app, "some"), get::<Subsurface>(&app, "pair"));
+    assert_eq!(medium(&app, "clear").0, [[0.0; 3]; 2]);
+    let half = Material::Custom {
+        sigma_a: Some(Vec3::ONE),
+        sigma_s: None,
+        sigma_t: None,
+        albedo: Some(Vec3::ONE),
+        g: 0.0,
+        eta: 1.3,
+    };
+    assert_eq!(half.coefficients(), None);
+    assert_eq!(Material::Preset("granite".into()).coefficients(), None);
+}
+
+#[test]
+fn everything_about_scattering_can_be_written() {
+    let app = Files::scene(
+        r#""bunny": (
+            Mesh: Sphere(),
+            Subsurface: (material: Preset("skin"), model: DirectionalDipole, specular: Some((strength: 0.5, shininess: 8)), local: (shininess: 4)),
+            ScatteringMaps: (strategy: Uniform, cameras: 8, samples: 24, candidates: 96, resolution: Texels(1200, 680),
+                radius: Millimetres(2.5), bias: 0.01, progressive: false),
+        ),
+        "plain": ( Mesh: Sphere(), Subsurface: (model: StandardDipole, specular: (strength: 0.1)),
+            ScatteringMaps: (strategy: Adaptive, candidates: Auto, resolution: Auto, radius: Auto, bias: Auto) ),
+        "matt": ( Mesh: Sphere(), Subsurface: (model: CalibratedDipole, specular: None) ),
+        "by default": ( Subsurface: (specular: Some(())) ),
+        "from above": ( ScatteringCamera: (target: "bunny", direction: (0.5, -1.0, 0.0)) ),
+        "from below": ( ScatteringCamera: (target: "plain") ),"#,
+    )
+    .load(&[]);
+    let bunny = Subsurface {
+        material: Material::Preset("skin".into()),
+        model: DipoleModel::DirectionalDipole,
+        specular: Some(Specular { strength: 0.5, shininess: 8.0 }),
+        local: Phong { shininess: 4.0, ..Phong::default() },
+    };
+    assert_eq!(get::<Subsurface>(&app, "bunny"), bunny);
+    let maps = ScatteringMaps {
+        strategy: MapStrategy::Uniform,
+        cameras: 8,
+        samples: 24,
+        candidates: Auto::Value(96),
+        resolution: MapResolution::Texels(1200, 680),
+        radius: SampleRadius::Millimetres(2.5),
+        bias: Auto::Value(0.01),
+        progressive: false,
+    };
+    assert_eq!(get::<ScatteringMaps>(&app, "bunny"), maps);
+    let plain: Subsurface = get(&app, "plain");
+    assert_eq!(plain.specular, Some(Specular { strength: 0.1, shininess: 60.0 }));
+    assert_eq!(plain.model, DipoleModel::StandardDipole);
+    assert_eq!(get::<ScatteringMaps>(&app, "plain"), ScatteringMaps::default());
+    assert_eq!(get::<Subsurface>(&app, "matt"), Subsurface::default());
+    assert_eq!(get::<ScatteringMaps>(&app, "matt"), ScatteringMaps::default(), "required");
+    let defaults = Subsurface { specular: Some(Specular::default()), ..Subsurface::default() };
+    assert_eq!(get::<Subsurface>(&app, "by default"), defaults);
+    let camera = ScatteringCamera { target: "bunny".into(), direction: Vec3::new(0.5, -1.0, 0.0) };
+    assert_eq!(get::<ScatteringCamera>(&app, "from above"), camera);
+    assert_eq!(get::<ScatteringCamera>(&app, "from below").direction, Vec3::NEG_Y);
+}
+
+#[test]
+fn an_optional_value_can_be_overridden_however_it_is_written() {
+    let files = Files::scene(
+        r#""some": ( Subsurface: (specular: Some((strength: 0.5))) ), "plain": ( Subsurface: (specular: (strength: 0.5)) ),
+        "none": ( Subsurface: (specular: None) ), "empty": ( Subsurface: (specular: Some /* so */ ( ( ) )) ), "default": ( Subsurface: () )"#,
+    );
+    let specular = |change: &str| {
+        let app = files.load(&[change]);
+        get::<Subsurface>(&app, change.split('.').next().unwrap()).specular
+    };
+    let highlight = |strength, shininess| Some(Specular { strength, shininess });
+    for name in ["some", "plain", "none", "empty", "default"] {
+        assert_eq!(specular(&format!("{name}.Subsurface.specular=None")), None, "{name}");
+        let change = format!("{name}.Subsurface.specular=Some((shininess: 9))");
+        assert_eq!(specular(&change), highlight(0.2, 9.0), "{name}");
+        let change = format!("{name}.Subsurface.specular=(strength: 0.75)");
+        assert_eq!(specular(&change), highlight(0.75, 60.0), "{name}");
+    }
+    for name in ["some", "plain"] {
+        assert_eq!(specular(&format!("{name}.Subsurface.specular.strength=0.25")), highlight(0.25, 60.0));
+        assert_eq!(specular(&format!("{name}.Subsurface.specular.shininess=9")), highlight(0.5, 9.0));
+    }
+    assert_eq!(specular("empty.Subsurface.specular.shininess=9"), highlight(0.2, 9.0));
+}
+
+#[test]
+fn the_materials_that_scenes_share_are_sound() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/materials");
+    let mut materials: Vec<PathBuf> =
+        fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    materials.sort();
+    assert!(materials.len() >= 4, "{materials:?}");
+    for path in materials {
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.starts_with("// "), "{} says what it is", path.display());
+        let scene = format!(r#""ball": ( Mesh: Sphere(), Subsurface: File({path:?}) )"#);
+        let app = Files::scene(&scene).load(&[]);
+        let Material::Preset(name) = get::<Subsurface>(&app, "ball").material else { continue };
+        let stem = path.file_stem().unwrap().to_string_lossy().into_owned();
+        assert!(name.starts_with(&stem), "{} is {name}", path.display());
+    }
+}
+
+/// What the cameras of a scene look at, by name.
+fn targets(app: &mut App) -> BTreeMap<String, String> {
+    let mut cameras = app.world_mut().query::<(&Name, &ScatteringCameraOf)>();
+    let world = app.world();
+    let targets = cameras.iter(world).map(|(camera, of)| {
+        assert!(world.get::<ScatteringCameras>(of.0).unwrap().iter().count() > 0);
+        (camera.to_string(), world.get::<Name>(of.0).unwrap().to_string())
+    });
+    targets.collect()
+}
+
+#[test]
+fn scattering_cameras_find_their_targets_through_reloads() {
+    let text = r#"
+        "from above": ( ScatteringCamera: (target: "bunny") ),
+        "bunny": ( Mesh: Sphere(subdivisions: 0), Subsurface: () ),
+        "candle": ( Mesh: Sphere(subdivisions: 0), Subsurface: (material: Preset("wax")) ),
+        "from below": ( ScatteringCamera: (target: "bunny", direction: (0.0, 1.0, 0.0)) ),"#;
+    let files = Files::scene(text);
+    let mut app = app();
+    let mut before: Vec<(Entity, _)> = Vec::new();
+    let mut reload = |text: &str| {
+        files.write("scene.ron", &format!("(entities: {{ {text} }})"));
+        let document = files.load_into(&mut app, &[]);
+        let errors = errors(&document.problems);
+        app.update();
+        let pairs: Vec<String> =
+            targets(&mut app).iter().map(|(camera, target)| format!("{camera}: {target}")).collect();
+        let mut cameras = app.world_mut().query::<(Entity, Ref<ScatteringCameraOf>)>();
+        let now: Vec<_> = cameras.iter(app.world()).map(|(entity, of)| (entity, of.last_changed())).collect();
+        let changed = now.iter().filter(|camera| !before.contains(*camera)).count();
+        before = now;
+        (pairs, changed, errors.len())
+    };
+    let bunny = ["from above: bunny".to_owned(), "from below: bunny".to_owned()];
+    assert_eq!(reload(text), (bunny.to_vec(), 2, 0));
+    assert_eq!(reload(text), (bunny.to_vec(), 0, 0), "nothing changed");
+    let turned = text.replace("(0.0, 1.0, 0.0)", "(1.0, 1.0, 0.0)");
+    assert_eq!(reload(&turned), (bunny.to_vec(), 0, 0), "the same target");
+    let other = text.replace(r#"target: "bunny", "#, r#"target: "candle", "#);
+    let both = vec!["from above: bunny".to_owned(), "from below: candle".to_owned()];
+    assert_eq!(reload(&other), (both.clone(), 1, 0));
+    let renamed = other.replace("bunny", "hare");
+    assert_eq!(reload(&renamed).0, ["from above: hare", "from below: candle"]);
+    assert_eq!(reload(&other).0, both);
+    let fewer = other.replace("ScatteringCamera: (target: \"bunny\")", "");
+    assert_eq!(reload(&fewer).0, ["from below: candle"]);
+    let opaque = other.replace("Subsurface: ()", "Phong: ()");
+    assert_eq!((reload(&opaque).2, reload(&other).0), (1, both), "an error leaves all as it was");
+    let swapped =
+        other.replace("\"candle\"", "\"x\"").replace("\"bunny\"", "\"candle\"").replace("\"x\"", "\"bunny\"");
+    assert_eq!(reload(&swapped).0, ["from above: candle", "from below: bunny"]);
+}
+
+#[test]
+fn a_target_made_by_code_is_found_and_forgotten() {
+    let mut app = app();
+    let camera = app.world_mut().spawn(ScatteringCamera { target: "blob".into(), ..Default::default() }).id();
+    app.update();
+    assert_eq!(app.world().get::<ScatteringCameraOf>(camera), None);
+    let blob = app.world_mut().spawn((Name::new("blob"), Subsurface::default())).id();
+    app.update();
+    assert_eq!(app.world().get::<ScatteringCameraOf>(camera), Some(&ScatteringCameraOf(blob)));
+    app.world_mut().entity_mut(blob).remove::<Subsurface>();
+    app.update();
+    assert_eq!(app.world().get::<ScatteringCameraOf>(camera), None);
+    app.world_mut().entity_mut(blob).insert(Subsurface::default());
+    app.update();
+    assert!(app.world().get::<ScatteringCameraOf>(camera).is_some());
+    app.world_mut().entity_mut(blob).insert(Name::new("drop"));
+    app.update();
+    assert_eq!(app.world().get::<ScatteringCameraOf>(camera), None);
+    app.world_mut().despawn(blob);
+    app.update();
+}
+
+/// A component of a plugin, with names in it.
+#[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
+#[reflect(Component, Default, PartialEq)]
+struct Orbit {
+    #[reflect(@NameOf("Mesh"))]
+    around: String,
+    #[reflect(@NameOf("Mesh"))]
+    away_from: Option<String>,
+    #[reflect(@Names { of: "way", known: &["left", "right"] })]
+    way: Option<String>,
+}
+
+#[test]
+fn plugins_may_ask_for_names() {
+    let read = |orbit: &str| {
+        let mut app = app();
+        app.register_type::<Orbit>();
+        let files =
+            Files::scene(&format!(r#""sun": ( Mesh: Sphere() ), "far": (), "moon": ( Orbit: ({orbit}) )"#));
+        let problems = files.load_into(&mut app, &[]).problems;
+        errors(&problems)
+    };
+    assert_eq!(read(r#"around: "sun""#), [""; 0]);
+    assert_eq!(read(r#"around: "sun", way: "Left""#), [""; 0]);
+    assert_eq!(read(r#"around: "sum""#), ["there is no entity `sum`; did you mean `sun`?"]);
+    let lacking = "the `around` of a `Orbit` needs a `Mesh`, and `far` has none; those with a `Mesh`: `sun`";
+    assert_eq!(read(r#"around: "far""#), [lacking]);
+    let none = ["there is no entity `x`; those with a `Mesh`: `sun`"];
+    assert_eq!(read(r#"around: "sun", away_from: "x""#), none);
+    assert_eq!(read(r#"around: "sun", away_from: None"#), [""; 0]);
+    let wrong = ["there is no way `lft`; did you mean `left`? known here: left, right"];
+    assert_eq!(read(r#"around: "sun", way: "lft""#), wrong);
+    assert_eq!(read(r#"around: "sun", way: Some("lft")"#), wrong);
+}
+
+#[test]
+fn what_glows_by_itself_needs_no_light() {
+    let dark = |entity: &str| {
+        let files = Files::scene(&format!(r#""ball": ( Mesh: Sphere(), {entity} )"#));
+        let problems = files.load_into(&mut app(), &[]).problems;
+        problems.iter().any(|problem| problem.message.contains("in the dark"))
+    };
+    assert!(dark("") && dark("Phong: ()") && dark("Subsurface: ()"));
+    assert!(!dark("Phong: (ambient: (1, 1, 1))"));
+    assert!(dark("Subsurface: (local: (ambient: (1, 1, 1)))"), "it scatters");
+    assert!(!dark("Subsurface: (local: (ambient: (1, 1, 1))), Shading: Local"));
+    assert!(dark("Subsurface: (), Phong: (ambient: (1, 1, 1))"), "its `Phong` plays no part");
 }
 
 #[test]
@@ -478,6 +742,7 @@ fn no_mutation_of_a_scene_makes_the_reader_panic() {
     let scenes = [
         include_str!("../src/cli/templates/scene.ron"),
         include_str!("../src/cli/templates/plugin_scene.ron"),
+        r#"(entities: { "a": ( Subsurface: (material: Custom(sigma_a: (1, 1, 1), sigma_s: (1e3, 2, 3)), specular: Some((strength: 0.2))), ScatteringMaps: (resolution: Texels(1, 2), radius: Millimetres(1)) ), "b": ( ScatteringCamera: (target: "a"), Subsurface: (specular: None, material: Preset("wax")) ) })"#,
         r##"(include: ["scene.ron", r#"x.ron"#], entities: { "a\u{e9}b": ( Transform: (scale: (1, 2, 3)), TransferFunction: (domain: Auto, iso: [(), (value: 1e3)]) ), /* ä */ 'b': () })"##,
     ];
     let files = Files::new(&[]);

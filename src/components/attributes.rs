@@ -81,6 +81,28 @@ pub struct Unit(pub &'static str);
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 pub struct Required;
 
+/// The texts that a field may hold, in small or capital letters.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(opaque)]
+pub struct Names {
+    /// What one of them is the name of, for people: `"medium"`.
+    pub of: &'static str,
+    /// All of them.
+    pub known: &'static [&'static str],
+}
+
+impl Names {
+    /// Whether `name` is one of them.
+    pub fn contains(&self, name: &str) -> bool {
+        self.known.iter().any(|known| known.eq_ignore_ascii_case(name))
+    }
+}
+
+/// Marks a field of a component that holds the name of another entity, for which the scene must write the component that this names:
+/// `#[reflect(@NameOf("Subsurface"))]`.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+pub struct NameOf(pub &'static str);
+
 /// Marks an enum whose variants are written without their names: a unit variant by its bare word, a variant with one field by the
 /// value alone. Of several such variants the first that fits is taken.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]

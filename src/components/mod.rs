@@ -1,7 +1,7 @@
 //! What a scene is: plain data, no GPU.
 //!
 //! Every type here is reflected, so it is written in RON by its short name with its fields (`Phong: (shininess: 60.0)`), is validated by
-//! the attributes on its fields ([`Range`]) and, where fields depend on each other, by [`Validate`]. Fields that are left out
+//! the attributes on its fields ([`Range`], [`Names`], [`NameOf`]) and, where fields depend on each other, by [`Validate`]. Fields that are left out
 //! take the values of the type's `Default`.
 
 mod asset_path;
@@ -23,12 +23,13 @@ mod volume;
 mod volume_lighting;
 
 pub use asset_path::AssetPath;
-pub use attributes::{Range, ReflectValidate, Required, Unit, Untagged, Validate};
+pub use attributes::{NameOf, Names, Range, ReflectValidate, Required, Unit, Untagged, Validate};
 pub use auto::Auto;
 pub use directional_light::DirectionalLight;
 pub use mesh::Mesh;
 pub use phong::Phong;
 pub use ray_cast::RayCast;
+pub(crate) use scattering_camera::aim;
 pub use scattering_camera::{ScatteringCamera, ScatteringCameraOf, ScatteringCameras};
 pub use scattering_maps::{MapResolution, MapStrategy, SampleRadius, ScatteringMaps};
 pub use scene_settings::SceneSettings;

@@ -1,10 +1,31 @@
-use super::{Phong, Range, ScatteringMaps, Unit};
+use super::{Names, Phong, Range, ScatteringMaps, Unit, Validate, attributes::ReflectValidate};
 use crate::optics::materials::{self, Coefficients};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::Vec3;
 
 /// A translucent mesh: light enters it, is scattered inside and leaves elsewhere.
+///
+/// | field | type | range | default |
+/// |---|---|---|---|
+/// | `material` | a [`Material`]: `Preset(name)` or `Custom(coefficients)`, per mm | – | `Preset("marble")` |
+/// | `model` | `CalibratedDipole`, `DirectionalDipole` or `StandardDipole` | – | `CalibratedDipole` |
+/// | `specular` | `None`, or `(strength, shininess)` of a white highlight on the surface | 0 to 1; 0 to 10,000 | `None` |
+/// | `local` | [`Phong`]: the look while [`Shading`](super::Shading) is `Local` | as in `Phong` | `()` |
+///
+/// It belongs beside a [`Mesh`](super::Mesh), closed and with its normals outwards: what it encloses is the medium. A [`Phong`] beside
+/// it plays no part. How finely the light is computed is in [`ScatteringMaps`].
+///
+/// Where light enters and leaves, the surface is smooth and refracts by `eta`. The light that it reflects without entering is no part
+/// of `model`: `specular` adds it as the highlight of a `Phong` whose `specular` is `strength` in all three colours.
+///
+/// Like every component it can be kept in a file of its own: `Subsurface: File("materials/cream.ron")`.
+///
+/// ```ron
+/// Subsurface: (material: Preset("marble"), model: CalibratedDipole, specular: Some((strength: 0.2, shininess: 60.0)))
+/// Subsurface: (material: Custom(sigma_a: (0.002, 0.004, 0.007), sigma_s: (2.2, 2.6, 3.0), eta: 1.5))
+/// Subsurface: (material: Custom(sigma_t: (3.0, 3.0, 3.0), albedo: (0.99, 0.9, 0.6), g: 0.6), local: (diffuse: (0.8, 0.7, 0.5)))
+/// ```
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(Component, Default, PartialEq)]
 #[require(ScatteringMaps)]
@@ -20,11 +41,24 @@ pub struct Subsurface {
 }
 
 /// A homogeneous medium, by name or by its coefficients.
+///
+/// | variant | field | unit | range | default |
+/// |---|---|---|---|---|
+/// | `Preset(name)` | one of the names in [`materials::NAMES`], small or capital | – | – | – |
+/// | `Custom` | `sigma_a`: absorption, (r, g, b) | per mm | 0 to 1e12 | – |
+/// | | `sigma_s`: scattering, (r, g, b), not reduced | per mm | 0 to 1e12 | – |
+/// | | `sigma_t`: extinction, (r, g, b) | per mm | 0 to 1e12 | – |
+/// | | `albedo`: the share of `sigma_t` that is scattering, (r, g, b) | – | 0 to 1 | – |
+/// | | `g`: mean cosine of the scattering angle | – | -0.999 to 0.999 | 0 |
+/// | | `eta`: index of refraction, inside over outside | – | 0.5 to 3 | 1.3 |
+///
+/// A custom medium is written with `sigma_a` and `sigma_s`, or with `sigma_t` and `albedo`; both of the one pair and none of the other.
+/// The millimetre is the scene's: [`SceneSettings::millimetres_per_unit`](super::SceneSettings) says how many make a unit.
 #[derive(Reflect, Clone, Debug, PartialEq)]
-#[reflect(Default, PartialEq)]
+#[reflect(Default, PartialEq, Validate)]
 pub enum Material {
     /// One of [`materials::MEDIA`], by name.
-    Preset(String),
+    Preset(#[reflect(@Names { of: "medium", known: &materials::NAMES })] String),
     /// By its coefficients: `sigma_a` and `sigma_s`, or `sigma_t` and `albedo`.
     Custom {
         /// Absorption.
@@ -77,11 +111,46 @@ impl Material {
     }
 }
 
+impl Validate for Material {
+    fn problems(&self) -> Vec<(&'static str, String)> {
+        let Self::Custom { sigma_a, sigma_s, sigma_t, albedo, .. } = self else { return Vec::new() };
+        let written = |pair: [(&'static str, &Option<Vec3>); 2]| -> Vec<&'static str> {
+            pair.into_iter().filter(|(_, value)| value.is_some()).map(|(name, _)| name).collect()
+        };
+        let first = written([("sigma_a", sigma_a), ("sigma_s", sigma_s)]);
+        let second = written([("sigma_t", sigma_t), ("albedo", albedo)]);
+        let either = "`sigma_a` and `sigma_s`, or `sigma_t` and `albedo`";
+        match (&first[..], &second[..]) {
+            ([_, _], []) | ([], [_, _]) => Vec::new(),
+            ([], []) => vec![("", format!("a medium needs {either}; found none of them"))],
+            ([one], []) | ([], [one]) => {
+                let missing = match *one {
+                    "sigma_a" => "sigma_s",
+                    "sigma_s" => "sigma_a",
+                    "sigma_t" => "albedo",
+                    _ => "sigma_t",
+                };
+                vec![(one, format!("`{one}` needs `{missing}` beside it: a medium is {either}"))]
+            }
+            _ => {
+                let (one, other) = (second[0], first[0]);
+                vec![(one, format!("`{one}` cannot stand beside `{other}`: a medium is {either}"))]
+            }
+        }
+    }
+}
+
 fn eta() -> f32 {
     1.3
 }
 
-/// How much light a point of light on the surface sends to another.
+/// How the light that enters at one point of a surface is taken to leave at others: what a model costs and gets wrong.
+///
+/// | model | what it is | what it gets wrong |
+/// |---|---|---|
+/// | `StandardDipole` | Jensen et al. 2001, eq. 4: isotropic, the light's direction plays no part | bright where the light grazes; too wide near the entry |
+/// | `DirectionalDipole` | Frisvad, Hachisuka & Kjeldsen 2014: a ray source and its image | the total reflected by a half space |
+/// | `CalibratedDipole` | the same shape, scaled so that this total is right | what no planar model can: corners, thin parts |
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Default, PartialEq)]
 pub enum DipoleModel {
@@ -94,7 +163,12 @@ pub enum DipoleModel {
     StandardDipole,
 }
 
-/// A highlight.
+/// A white highlight, as of [`Phong`].
+///
+/// | field | type | range | default |
+/// |---|---|---|---|
+/// | `strength` | share of the light in the highlight at normal incidence | 0 to 1 | 0.2 |
+/// | `shininess` | Blinn's exponent | 0 to 10,000 | 60 |
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Default, PartialEq)]
 pub struct Specular {

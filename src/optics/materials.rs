@@ -1,9 +1,9 @@
 //! Media by name: what light meets inside them.
 //!
 //! The measured ones are those of Jensen, Marschner, Levoy & Hanrahan, *A Practical Model for Subsurface Light Transport*
-//! (SIGGRAPH 2001), figure 5: the reduced scattering and the absorption coefficient of eleven materials at the red, green and blue of
-//! the measurement. They are reduced already, sigma_s' = (1 - g) sigma_s, so each is given as the isotropic medium (g = 0) with that
-//! coefficient. The paper measured no index of refraction; 1.3 (marble 1.5) is what it used.
+//! (SIGGRAPH 2001), figure 5: scattering and absorption coefficients of red, green and blue light, and an index of refraction. The
+//! scattering coefficients are reduced already, sigma_s' = (1 - g) sigma_s, so each medium is given as the isotropic one (g = 0) with
+//! that coefficient.
 
 /// What one colour meets in a homogeneous medium. The two coefficients are per millimetre.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,10 +67,53 @@ pub const MEDIA: [NamedMedium; 12] = [
 /// Second names, and what they stand for.
 pub const ALIASES: [(&str, &str); 3] = [("chicken", "chicken1"), ("milk", "wholemilk"), ("skin", "skin1")];
 
+/// Every name, second ones too.
+pub const NAMES: [&str; MEDIA.len() + ALIASES.len()] = {
+    let mut names = [""; MEDIA.len() + ALIASES.len()];
+    let mut index = 0;
+    while index < names.len() {
+        names[index] = if index < MEDIA.len() { MEDIA[index].name } else { ALIASES[index - MEDIA.len()].0 };
+        index += 1;
+    }
+    names
+};
+
 /// The medium of this name, in small or capital letters.
 pub fn named(name: &str) -> Option<&'static NamedMedium> {
     const KNOWN: &[NamedMedium] = &MEDIA;
     let alias = ALIASES.iter().find(|(alias, _)| alias.eq_ignore_ascii_case(name));
     let name = alias.map_or(name, |(_, meant)| meant);
     KNOWN.iter().find(|medium| medium.name.eq_ignore_ascii_case(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn measured_media_are_those_of_the_table() {
+        let text = include_str!("../../tests/truth/materials.json");
+        let table: serde_json::Value = serde_json::from_str(text).unwrap_or_default();
+        let cases = table["cases"].as_array().cloned().unwrap_or_default();
+        assert_eq!(cases.len() + 1, MEDIA.len(), "all but wax are measured");
+        for case in cases {
+            let name = case["name"].as_str().unwrap_or_default();
+            let Some(medium) = named(name) else { panic!("no {name}") };
+            let numbers = |field: &str| [0, 1, 2].map(|colour| case[field][colour].as_f64());
+            assert_eq!(medium.sigma_s_reduced.map(Some), numbers("sigma_s_prime_per_mm"), "{name}");
+            assert_eq!(medium.sigma_a.map(Some), numbers("sigma_a_per_mm"), "{name}");
+            assert_eq!(Some(medium.eta), case["eta"].as_f64(), "{name}");
+        }
+    }
+
+    #[test]
+    fn every_name_is_one_medium_in_small_and_capital_letters() {
+        for name in NAMES {
+            assert!(named(name).is_some() && named(name) == named(&name.to_uppercase()), "{name}");
+            assert_eq!(NAMES.iter().filter(|other| **other == name).count(), 1, "{name}");
+        }
+        assert_eq!(named("milk"), named("wholemilk"));
+        assert_eq!(named("skin"), named("skin1"));
+        assert_eq!(named("granite"), None);
+    }
 }

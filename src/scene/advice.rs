@@ -2,14 +2,18 @@
 
 use super::document::{SceneDocument, SceneEntity};
 use super::problem::Problem;
-use crate::components::{DirectionalLight, Mesh, Phong, ViewCamera, Volume, VolumeLighting};
+use crate::components::{
+    Auto, DirectionalLight, MapResolution, MapStrategy, Mesh, Phong, ScatteringCamera, ScatteringMaps,
+    Shading, Subsurface, ViewCamera, Volume, VolumeLighting,
+};
 use bevy_reflect::Reflect;
 use glam::Vec3;
 use std::any::TypeId;
 
-/// Notes on a scene without errors: nothing to see in it, or no light on what needs some.
+/// Notes on a scene without errors: nothing to see in it, no light on what needs some, components without effect.
 pub(super) fn advice(document: &SceneDocument) -> Vec<Problem> {
-    [nothing_to_see(document), no_light(document)].into_iter().flatten().collect()
+    let whole = [nothing_to_see(document), no_light(document)].into_iter().flatten();
+    whole.chain(document.entities.iter().flat_map(|entity| scattering(document, entity))).collect()
 }
 
 fn nothing_to_see(document: &SceneDocument) -> Option<Problem> {
@@ -30,7 +34,7 @@ fn no_light(document: &SceneDocument) -> Option<Problem> {
     if document.entities.iter().any(is_light) {
         return None;
     }
-    let mut dark = document.entities.iter().filter(|entity| needs_light(entity));
+    let mut dark = document.entities.iter().filter(|entity| needs_light(entity, document.settings.shading));
     let first = dark.next()?;
     let others = match dark.count() {
         0 => String::new(),
@@ -51,8 +55,13 @@ fn no_light(document: &SceneDocument) -> Option<Problem> {
     )
 }
 
-fn needs_light(entity: &SceneEntity) -> bool {
-    let glows = component::<Phong>(entity).is_some_and(|phong| phong.ambient != Vec3::ZERO);
+fn needs_light(entity: &SceneEntity, shading: Shading) -> bool {
+    let shading = component::<Shading>(entity).copied().unwrap_or(shading);
+    let phong = match component::<Subsurface>(entity) {
+        Some(subsurface) => Some(&subsurface.local).filter(|_| shading == Shading::Local),
+        None => component::<Phong>(entity),
+    };
+    let glows = phong.is_some_and(|phong| phong.ambient != Vec3::ZERO);
     let is_mesh = component::<Mesh>(entity).is_some();
     let is_volume = component::<Volume>(entity).is_some();
     let lit_volume = match component::<VolumeLighting>(entity) {
@@ -60,6 +69,55 @@ fn needs_light(entity: &SceneEntity) -> bool {
         _ => false,
     };
     is_mesh && !glows || is_volume && lit_volume
+}
+
+/// What is written for the scattering of a mesh, and has no effect.
+fn scattering(document: &SceneDocument, entity: &SceneEntity) -> Vec<Problem> {
+    let note = |path: &str, message: String, help: String| {
+        Problem::note(message).label("without effect").help(help).at(entity.place_of(path))
+    };
+    let name = &entity.name;
+    let mut notes = Vec::new();
+    let subsurface = component::<Subsurface>(entity);
+    if subsurface.is_some() && component::<Mesh>(entity).is_none() {
+        let message = format!("`{name}` has a `Subsurface`, but no `Mesh` for light to enter");
+        notes.push(note("Subsurface", message, "write one beside it: `Mesh: Sphere()`".into()));
+    }
+    if subsurface.is_some() && component::<Phong>(entity).is_some() {
+        let message = format!("`{name}` is translucent, so its `Phong` plays no part");
+        let help =
+            "a highlight is `Subsurface.specular`; the look while `Shading` is `Local` is `Subsurface.local`";
+        notes.push(note("Phong", message, help.into()));
+    }
+    let Some(maps) = component::<ScatteringMaps>(entity) else { return notes };
+    if subsurface.is_none() {
+        let message = format!("`{name}` has `ScatteringMaps`, but no `Subsurface` that they are for");
+        notes.push(note(
+            "ScatteringMaps",
+            message,
+            "write one beside it: `Subsurface: (material: Preset(\"marble\"))`".into(),
+        ));
+    } else if maps.cameras == 0 && needs_cameras(maps) && !has_camera(document, name) {
+        let message =
+            format!("no scattering camera looks at `{name}`: no light that leaves it will be computed");
+        let help = "raise `cameras`, or add views by hand: `\"view\": ( ScatteringCamera: (target: \"…\") )`";
+        notes.push(note("ScatteringMaps.cameras", message, help.into()).label("none"));
+    }
+    if maps.strategy == MapStrategy::Adaptive && maps.candidates != Auto::Auto {
+        let message = format!("`candidates` has no effect on `{name}`, whose `strategy` is `Adaptive`");
+        let help = "leave it out, or write `strategy: Uniform`";
+        notes.push(note("ScatteringMaps.candidates", message, help.into()));
+    }
+    notes
+}
+
+fn needs_cameras(maps: &ScatteringMaps) -> bool {
+    maps.strategy == MapStrategy::Uniform || maps.resolution != MapResolution::Auto
+}
+
+fn has_camera(document: &SceneDocument, target: &str) -> bool {
+    let mut cameras = document.entities.iter().filter_map(component::<ScatteringCamera>);
+    cameras.any(|camera| camera.target == target)
 }
 
 fn component<T: Reflect>(entity: &SceneEntity) -> Option<&T> {

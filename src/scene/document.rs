@@ -5,7 +5,8 @@ use super::edit;
 use super::names::{nearest_file, suggestion};
 use super::parts::{Named, Part};
 use super::problem::{Place, Problem, Severity, SourceFile};
-use super::reader::Reader;
+use super::reader::{Allowed, Reader};
+use super::references::references;
 use crate::components::{AssetPath, SceneSettings};
 use bevy_ecs::reflect::ReflectComponent;
 use bevy_reflect::{Reflect, TypeInfo, TypeRegistration, TypeRegistry, structs::Struct};
@@ -110,6 +111,7 @@ impl SceneDocument {
                 Err(problem) => document.problems.push(*problem),
             }
         }
+        document.problems.extend(references(&document));
         if !document.has_errors() {
             document.problems.extend(advice(&document));
         }
@@ -227,8 +229,8 @@ impl<'a> Loader<'a> {
         let Some(TypeInfo::Struct(info)) = registration.map(TypeRegistration::type_info) else { return };
         let Some(field) = info.field(name) else { return };
         let Some(registration) = self.registry.get(field.type_id()) else { return };
-        let range = field.get_attribute();
-        if let Some(value) = reader.value_at(name, part, registration, range)
+        let allowed = Allowed::by(field.custom_attributes());
+        if let Some(value) = reader.value_at(name, part, registration, allowed)
             && let Some(target) = self.settings.field_mut(name)
         {
             target.apply(value.as_ref());
@@ -242,7 +244,9 @@ impl<'a> Loader<'a> {
             Err(misfit) => return reader.report_shape(part, misfit, "a list of paths `[\"…\"]`"),
         };
         for element in elements {
-            let Some(value) = reader.value_at("include", &element, registration, None) else { continue };
+            let Some(value) = reader.value_at("include", &element, registration, Allowed::default()) else {
+                continue;
+            };
             let Some(path) = value.try_downcast_ref::<AssetPath>().map(|path| path.path().to_owned()) else {
                 continue;
             };
@@ -335,7 +339,7 @@ impl<'a> Loader<'a> {
         let file_part = if has_own_files { None } else { edit::file_path(part) };
         let Some(path_part) = file_part else { return reader.complete(part, registration, name) };
         let path_type = self.registry.get(TypeId::of::<AssetPath>())?;
-        let path = reader.value_at(name, &path_part, path_type, None)?;
+        let path = reader.value_at(name, &path_part, path_type, Allowed::default())?;
         let path = path.try_downcast_ref::<AssetPath>()?.path().to_owned();
         let file = self.text(&path, Some(&reader.place(&path_part)))?;
         let mut own = Reader::new(self.registry, file.clone());

@@ -81,7 +81,10 @@ pub(super) fn apply(
 /// Adds a field in front of the others of what stands at `place`, which may be a bare name without parentheses.
 fn insert(place: &Place, field: &str, value: &str) -> (PathBuf, String) {
     let text = &place.file.text()[place.bytes.clone()];
-    let Some(open) = tokens(text).find(|token| text[token.clone()].starts_with('(')) else {
+    // The parentheses of `Some((…))` that hold fields are the second.
+    let is_some = tokens(text).next().is_some_and(|token| &text[token] == "Some");
+    let mut opening = tokens(text).filter(|token| text[token.clone()].starts_with('('));
+    let Some(open) = opening.nth(usize::from(is_some)) else {
         return splice(place, &format!("{text}({field}: {value})"));
     };
     let inside = place.bytes.start + open.end;

@@ -15,6 +15,7 @@ mod parts;
 mod problem;
 mod reader;
 mod reconcile;
+mod references;
 mod tokens;
 mod wanted;
 

@@ -236,7 +236,11 @@ fn explain(error: &ron::Error, found: &str) -> (String, Option<&'static str>) {
             ("the comment that begins here never ends".into(), Some("close it with `*/`"))
         }
         Error::ExpectedStructLike | Error::ExpectedNamedStructLike(_) => (expected("`(`"), None),
-        Error::ExpectedStructLikeEnd | Error::ExpectedOptionEnd => (expected("`)`"), None),
+        Error::ExpectedStructLikeEnd => (expected("`)`"), None),
+        Error::ExpectedOptionEnd => (
+            expected("`)`"),
+            Some("`Some` holds one value: write `Some((name: value, …))`, or leave `Some` away"),
+        ),
         Error::ExpectedArray => (expected("`[`"), None),
         Error::ExpectedArrayEnd => (expected("`]`"), None),
         Error::ExpectedMap => (expected("`{`"), None),

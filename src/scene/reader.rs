@@ -1,10 +1,11 @@
 //! RON parts become reflected values, by the types that the registry knows.
 
-use super::names::suggestion;
+use super::names::{nearest, suggestion};
 use super::parts::{Misfit, Named, Part, Payload, Shape};
 use super::problem::{Place, Problem, SourceFile};
 use super::wanted::{excerpt, how_to_write, is_plain, numbers, wanted};
-use crate::components::{AssetPath, Range, ReflectValidate, Required, Untagged};
+use crate::components::{AssetPath, Names, Range, ReflectValidate, Required, Untagged};
+use bevy_reflect::attributes::CustomAttributes;
 use bevy_reflect::enums::{DynamicEnum, DynamicVariant, EnumInfo, VariantInfo};
 use bevy_reflect::list::DynamicList;
 use bevy_reflect::serde::TypedReflectDeserializer;
@@ -29,6 +30,23 @@ pub(super) struct Reader<'r> {
     pub places: Vec<(String, Place)>,
     /// Path of the value being read.
     path: String,
+}
+
+/// What a field allows, by its attributes, of the numbers and texts in it.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Allowed<'a> {
+    range: Option<&'a Range>,
+    names: Option<&'a Names>,
+}
+
+impl<'a> Allowed<'a> {
+    pub fn by(attributes: &'a CustomAttributes) -> Self {
+        Self { range: attributes.get(), names: attributes.get() }
+    }
+
+    fn or(self, other: Self) -> Self {
+        Self { range: self.range.or(other.range), names: self.names.or(other.names) }
+    }
 }
 
 /// A value that was read, unless a problem was reported in its stead.
@@ -74,7 +92,7 @@ impl<'r> Reader<'r> {
     ) -> Option<Box<dyn Reflect>> {
         self.path = name.to_owned();
         let before = self.problems.len();
-        let value = self.value(part, registration, None)?;
+        let value = self.value(part, registration, Allowed::default())?;
         if self.problems.len() > before {
             return None;
         }
@@ -94,19 +112,21 @@ impl<'r> Reader<'r> {
         path: &str,
         part: &Part,
         registration: &TypeRegistration,
-        range: Option<&Range>,
+        allowed: Allowed,
     ) -> Value {
         let before = self.problems.len();
         self.path = path.to_owned();
-        self.value(part, registration, range).filter(|_| self.problems.len() == before)
+        self.value(part, registration, allowed).filter(|_| self.problems.len() == before)
     }
 
-    /// Reads one value of a registered type. `range` is what the field that it stands in allows.
-    pub fn value(&mut self, part: &Part, registration: &TypeRegistration, range: Option<&Range>) -> Value {
+    /// Reads one value of a registered type. `allowed` is what the field that it stands in allows.
+    pub fn value(&mut self, part: &Part, registration: &TypeRegistration, allowed: Allowed) -> Value {
         self.places.push((self.path.clone(), self.place(part)));
         let before = self.problems.len();
         let value = match registration.type_info() {
-            _ if registration.data::<ReflectDeserialize>().is_some() => self.leaf(part, registration, range),
+            _ if registration.data::<ReflectDeserialize>().is_some() => {
+                self.leaf(part, registration, allowed)
+            }
             TypeInfo::Struct(info) => {
                 let fields = self.shaped(part, part.fields(), "`(field: value, …)`")?;
                 let known: Vec<_> = info.iter().collect();
@@ -119,8 +139,10 @@ impl<'r> Reader<'r> {
                 Some(Box::new(represent(read, registration.type_info())) as Box<dyn PartialReflect>)
             }
             TypeInfo::TupleStruct(info) => {
-                let types: Vec<_> =
-                    info.iter().map(|field| (field.type_id(), field.get_attribute::<Range>())).collect();
+                let types: Vec<_> = info
+                    .iter()
+                    .map(|field| (field.type_id(), Allowed::by(field.custom_attributes())))
+                    .collect();
                 self.tuple(part, &types).map(|values| {
                     let mut tuple = DynamicTupleStruct::default();
                     values.into_iter().for_each(|value| tuple.insert_boxed(value));
@@ -129,16 +151,16 @@ impl<'r> Reader<'r> {
                 })
             }
             TypeInfo::Tuple(info) => {
-                let types: Vec<_> = info.iter().map(|field| (field.type_id(), range)).collect();
+                let types: Vec<_> = info.iter().map(|field| (field.type_id(), allowed)).collect();
                 self.tuple(part, &types).map(|values| {
                     let mut tuple = DynamicTuple::default();
                     values.into_iter().for_each(|value| tuple.insert_boxed(value));
                     Box::new(tuple) as Box<dyn PartialReflect>
                 })
             }
-            TypeInfo::List(info) => self.list(part, info.item_ty().id(), range),
-            TypeInfo::Enum(info) => self.enumeration(part, info, registration, range),
-            _ => self.leaf(part, registration, range),
+            TypeInfo::List(info) => self.list(part, info.item_ty().id(), allowed),
+            TypeInfo::Enum(info) => self.enumeration(part, info, registration, allowed),
+            _ => self.leaf(part, registration, allowed),
         };
         if self.problems.len() == before {
             self.validate(part, registration, value.as_deref());
@@ -147,7 +169,7 @@ impl<'r> Reader<'r> {
     }
 
     /// A value that serde reads in one go: numbers, text, vectors, types with a format of their own.
-    fn leaf(&mut self, part: &Part, registration: &TypeRegistration, range: Option<&Range>) -> Value {
+    fn leaf(&mut self, part: &Part, registration: &TypeRegistration, allowed: Allowed) -> Value {
         let seed = TypedReflectDeserializer::new(registration, self.registry);
         let mut value = match part.read(seed) {
             Ok(value) => value,
@@ -167,8 +189,8 @@ impl<'r> Reader<'r> {
         if let Some(path) = value.try_downcast_mut::<AssetPath>() {
             path.resolve(self.file.path().parent().unwrap_or(Path::new("")));
         }
-        for number in numbers(value.as_ref()) {
-            let range = range.copied().unwrap_or(Range::new(f64::MIN, f64::MAX));
+        for (number, digits) in numbers(value.as_ref()) {
+            let range = allowed.range.copied().unwrap_or(Range::new(f64::MIN, f64::MAX));
             if !number.is_finite() || !range.contains(number) {
                 let bounds = if range.max == f64::MAX && range.min == f64::MIN {
                     "a finite number".into()
@@ -176,11 +198,22 @@ impl<'r> Reader<'r> {
                     range.to_string()
                 };
                 // What does not fit into 32 bits reads as infinite; the text says what was meant.
-                let found = if number.is_finite() { number.to_string() } else { excerpt(part.text) };
+                let found = if number.is_finite() { digits } else { excerpt(part.text) };
                 let message = format!("{} must be {bounds}, found `{found}`", self.name());
                 self.report(part, Problem::error(message).label("out of range"));
                 return None;
             }
+        }
+        if let Some(names) = allowed.names
+            && let Some(name) = value.try_downcast_ref::<String>()
+            && !names.contains(name)
+        {
+            let known = format!("known here: {}", names.known.join(", "));
+            let help = nearest(name, names.known.iter().copied())
+                .map_or(known.clone(), |near| format!("did you mean `{near}`? {known}"));
+            let problem = Problem::error(format!("there is no {} `{name}`", names.of)).label("unknown name");
+            self.report(part, problem.help(help));
+            return None;
         }
         Some(value)
     }
@@ -213,7 +246,7 @@ impl<'r> Reader<'r> {
             }
             seen.push((field.name(), self.place(name)));
             if let Some(value) = self.within(&format!(".{}", field.name()), |reader| {
-                reader.typed(value, field.type_id(), field.get_attribute::<Range>())
+                reader.typed(value, field.type_id(), Allowed::by(field.custom_attributes()))
             }) {
                 read.insert_boxed(field.name(), value);
             }
@@ -229,11 +262,7 @@ impl<'r> Reader<'r> {
         read
     }
 
-    fn tuple(
-        &mut self,
-        part: &Part,
-        types: &[(TypeId, Option<&Range>)],
-    ) -> Option<Vec<Box<dyn PartialReflect>>> {
+    fn tuple(&mut self, part: &Part, types: &[(TypeId, Allowed)]) -> Option<Vec<Box<dyn PartialReflect>>> {
         let parts = match part.tuple(types.len()) {
             Ok(parts) if parts.len() == types.len() => parts,
             Ok(parts) => {
@@ -261,19 +290,19 @@ impl<'r> Reader<'r> {
             .iter()
             .zip(types)
             .enumerate()
-            .map(|(index, (part, (ty, range)))| {
-                self.within(&format!(".{index}"), |reader| reader.typed(part, *ty, *range))
+            .map(|(index, (part, (ty, allowed)))| {
+                self.within(&format!(".{index}"), |reader| reader.typed(part, *ty, *allowed))
             })
             .collect();
         values.into_iter().collect()
     }
 
-    fn list(&mut self, part: &Part, item: TypeId, range: Option<&Range>) -> Value {
+    fn list(&mut self, part: &Part, item: TypeId, allowed: Allowed) -> Value {
         let elements = self.shaped(part, part.elements(), "a list `[value, …]`")?;
         let mut list = DynamicList::default();
         for (index, element) in elements.iter().enumerate() {
             if let Some(value) =
-                self.within(&format!("[{index}]"), |reader| reader.typed(element, item, range))
+                self.within(&format!("[{index}]"), |reader| reader.typed(element, item, allowed))
             {
                 list.push_box(value);
             }
@@ -286,20 +315,24 @@ impl<'r> Reader<'r> {
         part: &Part,
         info: &'static EnumInfo,
         registration: &TypeRegistration,
-        range: Option<&Range>,
+        allowed: Allowed,
     ) -> Value {
         if info.has_attribute::<Untagged>() {
-            return self.untagged(part, info, registration, range);
+            return self.untagged(part, info, registration, allowed);
         }
         if info.type_path().starts_with("core::option::Option<") {
-            return self.option(part, info, registration, range);
+            return self.option(part, info, registration, allowed);
         }
         let word = part.word();
         let Some(variant) = word.and_then(|word| info.variant(word.text)) else {
             let at = word.unwrap_or(*part);
             let message = format!("`{}` is no kind of {}", excerpt(at.text), self.name());
             let problem = Problem::error(message).label("unknown");
-            self.report(&at, problem.help(suggestion(at.text, info.variant_names())));
+            let help = match word {
+                Some(word) => suggestion(word.text, info.variant_names()),
+                None => format!("write {}", info.iter().map(how_to_write).collect::<Vec<_>>().join(" or ")),
+            };
+            self.report(&at, problem.help(help));
             return None;
         };
         let shape = match variant {
@@ -318,24 +351,22 @@ impl<'r> Reader<'r> {
             }
             _ => self.shaped(part, part.payload(shape), &how)?,
         };
-        let variant_value =
-            match (variant, payload) {
-                (VariantInfo::Struct(info), Payload::Fields(fields)) => {
-                    let known: Vec<_> = info.iter().collect();
-                    DynamicVariant::Struct(self.fields(part, fields, &known, variant.name()))
+        let variant_value = match (variant, payload) {
+            (VariantInfo::Struct(info), Payload::Fields(fields)) => {
+                let known: Vec<_> = info.iter().collect();
+                DynamicVariant::Struct(self.fields(part, fields, &known, variant.name()))
+            }
+            (VariantInfo::Tuple(info), Payload::Values(parts)) => {
+                let mut tuple = DynamicTuple::default();
+                for (index, (part, field)) in parts.iter().zip(info.iter()).enumerate() {
+                    tuple.insert_boxed(self.within(&format!(".{index}"), |reader| {
+                        reader.typed(part, field.type_id(), Allowed::by(field.custom_attributes()))
+                    })?);
                 }
-                (VariantInfo::Tuple(info), Payload::Values(parts)) => {
-                    let mut tuple = DynamicTuple::default();
-                    for (index, (part, field)) in parts.iter().zip(info.iter()).enumerate() {
-                        let range = field.get_attribute::<Range>();
-                        tuple.insert_boxed(self.within(&format!(".{index}"), |reader| {
-                            reader.typed(part, field.type_id(), range)
-                        })?);
-                    }
-                    DynamicVariant::Tuple(tuple)
-                }
-                _ => DynamicVariant::Unit,
-            };
+                DynamicVariant::Tuple(tuple)
+            }
+            _ => DynamicVariant::Unit,
+        };
         Some(Box::new(enum_value(variant.name(), variant_value, registration)))
     }
 
@@ -345,7 +376,7 @@ impl<'r> Reader<'r> {
         part: &Part,
         info: &'static EnumInfo,
         registration: &TypeRegistration,
-        range: Option<&Range>,
+        allowed: Allowed,
     ) -> Value {
         if let Some(VariantInfo::Unit(unit)) = info.variant(part.text) {
             return Some(Box::new(enum_value(unit.name(), DynamicVariant::Unit, registration)));
@@ -359,7 +390,9 @@ impl<'r> Reader<'r> {
         let before = (self.problems.len(), self.places.len());
         let mut first_problems = Vec::new();
         for (name, field) in carriers {
-            if let Some(value) = self.typed(part, field.type_id(), field.get_attribute::<Range>().or(range)) {
+            if let Some(value) =
+                self.typed(part, field.type_id(), Allowed::by(field.custom_attributes()).or(allowed))
+            {
                 let mut tuple = DynamicTuple::default();
                 tuple.insert_boxed(value);
                 return Some(Box::new(enum_value(name, DynamicVariant::Tuple(tuple), registration)));
@@ -393,26 +426,36 @@ impl<'r> Reader<'r> {
         Some(each.collect::<Option<Vec<_>>>()?.join(" or "))
     }
 
+    /// A value that may be absent: `None`, `Some(value)`, or the value itself.
     fn option(
         &mut self,
         part: &Part,
         info: &'static EnumInfo,
         registration: &TypeRegistration,
-        range: Option<&Range>,
+        allowed: Allowed,
     ) -> Value {
-        let inner = self.shaped(part, part.option(), "`Some(value)` or `None`")?;
+        let is_tagged = part
+            .word()
+            .is_some_and(|word| ["some", "none"].iter().any(|tag| tag.eq_ignore_ascii_case(word.text)));
+        let inner = match is_tagged {
+            true => self.shaped(part, part.option(), "`Some(value)` or `None`")?,
+            false => Some(*part),
+        };
         let Some(inner) = inner else {
             return Some(Box::new(enum_value("None", DynamicVariant::Unit, registration)));
         };
         let VariantInfo::Tuple(some) = info.variant("Some")? else { return None };
         let mut tuple = DynamicTuple::default();
-        tuple.insert_boxed(self.typed(&inner, some.field_at(0)?.type_id(), range)?);
+        let places = self.places.len();
+        tuple.insert_boxed(self.typed(&inner, some.field_at(0)?.type_id(), allowed)?);
+        // The place of the whole stands for the path, so that what replaces it may be `None`.
+        self.places.remove(places);
         Some(Box::new(enum_value("Some", DynamicVariant::Tuple(tuple), registration)))
     }
 
-    fn typed(&mut self, part: &Part, ty: TypeId, range: Option<&Range>) -> Value {
+    fn typed(&mut self, part: &Part, ty: TypeId, allowed: Allowed) -> Value {
         match self.registry.get(ty) {
-            Some(registration) => self.value(part, registration, range),
+            Some(registration) => self.value(part, registration, allowed),
             None => {
                 let problem = Problem::error("the type of this field is not registered for reflection");
                 self.report(

@@ -35,24 +35,25 @@ pub(super) fn is_plain(registration: &TypeRegistration) -> bool {
     !wanted(registration).starts_with("a `")
 }
 
-/// The numbers in a leaf.
-pub(super) fn numbers(value: &dyn PartialReflect) -> Vec<f64> {
+/// The numbers in a leaf, each with its digits as they would be written.
+pub(super) fn numbers(value: &dyn PartialReflect) -> Vec<(f64, String)> {
     use glam::{UVec3, Vec2, Vec3};
-    let any = value;
-    if let Some(number) = any.try_downcast_ref::<f32>() {
-        vec![f64::from(*number)]
-    } else if let Some(number) = any.try_downcast_ref::<f64>() {
-        vec![*number]
-    } else if let Some(number) = any.try_downcast_ref::<u32>() {
-        vec![f64::from(*number)]
-    } else if let Some(number) = any.try_downcast_ref::<i32>() {
-        vec![f64::from(*number)]
-    } else if let Some(vector) = any.try_downcast_ref::<Vec2>() {
-        vector.to_array().map(f64::from).to_vec()
-    } else if let Some(vector) = any.try_downcast_ref::<Vec3>() {
-        vector.to_array().map(f64::from).to_vec()
-    } else if let Some(vector) = any.try_downcast_ref::<UVec3>() {
-        vector.to_array().map(f64::from).to_vec()
+    let single = |number: &f32| (f64::from(*number), number.to_string());
+    let whole = |number: &u32| (f64::from(*number), number.to_string());
+    if let Some(number) = value.try_downcast_ref::<f32>() {
+        vec![single(number)]
+    } else if let Some(number) = value.try_downcast_ref::<f64>() {
+        vec![(*number, number.to_string())]
+    } else if let Some(number) = value.try_downcast_ref::<u32>() {
+        vec![whole(number)]
+    } else if let Some(number) = value.try_downcast_ref::<i32>() {
+        vec![(f64::from(*number), number.to_string())]
+    } else if let Some(vector) = value.try_downcast_ref::<Vec2>() {
+        vector.to_array().iter().map(single).collect()
+    } else if let Some(vector) = value.try_downcast_ref::<Vec3>() {
+        vector.to_array().iter().map(single).collect()
+    } else if let Some(vector) = value.try_downcast_ref::<UVec3>() {
+        vector.to_array().iter().map(whole).collect()
     } else {
         Vec::new()
     }
