@@ -50,7 +50,12 @@ pub fn uniform_each<T: ShaderType + ShaderSize + WriteInto>(
 pub fn storage(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC;
     let label = Some(label);
-    gpu.device.create_buffer(&wgpu::BufferDescriptor { label, size: size.max(16), usage, mapped_at_creation: false })
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label,
+        size: size.max(16),
+        usage,
+        mapped_at_creation: false,
+    })
 }
 
 /// A storage buffer of these bytes, for kernels to read.

@@ -34,8 +34,12 @@ impl Draw {
         let module = shader::module(gpu, descriptor.name, descriptor.generated)?;
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
-        let entries: Vec<_> =
-            descriptor.bindings.iter().enumerate().map(|(index, ty)| layout_entry(index, *ty, visibility)).collect();
+        let entries: Vec<_> = descriptor
+            .bindings
+            .iter()
+            .enumerate()
+            .map(|(index, ty)| layout_entry(index, *ty, visibility))
+            .collect();
         let label = Some(descriptor.name);
         let layout = gpu
             .device
@@ -45,7 +49,8 @@ impl Draw {
             bind_group_layouts: &[Some(&layout)],
             immediate_size: 0,
         });
-        let buffers: Vec<_> = descriptor.vertex_buffers.iter().copied().map(vertex_buffer).map(Some).collect();
+        let buffers: Vec<_> =
+            descriptor.vertex_buffers.iter().copied().map(vertex_buffer).map(Some).collect();
         let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label,
             layout: Some(&pipeline_layout),

@@ -25,8 +25,12 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuEr
 /// The bytes of a buffer that can be copied from.
 pub fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
     let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
-    let descriptor =
-        wgpu::BufferDescriptor { label: Some("read back"), size: buffer.size(), usage, mapped_at_creation: false };
+    let descriptor = wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size: buffer.size(),
+        usage,
+        mapped_at_creation: false,
+    };
     let readable = gpu.device.create_buffer(&descriptor);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_buffer_to_buffer(buffer, 0, &readable, 0, buffer.size());

@@ -8,7 +8,9 @@ use super::light_gbuffer::LightViews;
 use super::scattered_radiosity::ScatteredRadiosity;
 use super::surface_points::SurfacePoints;
 use crate::components::DirectionalLight;
-use crate::gpu::{Gpu, GpuError, Kernel, KernelDescriptor, PassTimer, binding, storage, storage_of, uniform_buffer};
+use crate::gpu::{
+    Gpu, GpuError, Kernel, KernelDescriptor, PassTimer, binding, storage, storage_of, uniform_buffer,
+};
 use crate::render::Failure;
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
@@ -77,7 +79,16 @@ pub(crate) fn run(
             _ => new.insert(Radiosity { points: storage(&gpu, "combine", size), made: (0, Vec::new()) }),
         };
         let timing = timer.as_mut().and_then(|timer| timer.time_compute("combine"));
-        match draw(&gpu, &mut combiner, points.count, &made.1, &layers.layers, &kept.points, timing, &mut report) {
+        match draw(
+            &gpu,
+            &mut combiner,
+            points.count,
+            &made.1,
+            &layers.layers,
+            &kept.points,
+            timing,
+            &mut report,
+        ) {
             Ok(()) => kept.made = made,
             Err(error) => failure.keep(Err(error)),
         }

@@ -200,7 +200,8 @@ fn blockers(
         let (low, high) = placed_corners(placement, mesh.bounds)
             .map(|corner| light_from_scene.transform_point3(corner))
             .fold(far, |(low, high), corner| (low.min(corner), high.max(corner)));
-        let is_beside = low.x > frame.high.x || high.x < frame.low.x || low.y > frame.high.y || high.y < frame.low.y;
+        let is_beside =
+            low.x > frame.high.x || high.x < frame.low.x || low.y > frame.high.y || high.y < frame.low.y;
         if !is_beside && high.z > frame.low.z {
             *top = top.max(high.z);
             found.push((entity, (buffers.clone(), *placement)));
@@ -269,7 +270,13 @@ fn make(gpu: &Gpu) -> Result<Draw, GpuError> {
     )
 }
 
-fn uniform(body: &Body, frame: &LightFrame, top: f64, placement: &Placement, is_lit: bool) -> LightMeshUniform {
+fn uniform(
+    body: &Body,
+    frame: &LightFrame,
+    top: f64,
+    placement: &Placement,
+    is_lit: bool,
+) -> LightMeshUniform {
     let light_from_mesh = frame.light_from_body * body.body_from_scene * placement.0;
     let (low, high) = (frame.low, frame.high.truncate().extend(top));
     LightMeshUniform {

@@ -38,7 +38,12 @@ impl MediumUniform {
     /// The medium of a body, of which a unit of length has so many millimetres. `None` where its material has no meaning.
     pub fn new(subsurface: &Subsurface, millimetres: f64) -> Option<Self> {
         let channels = subsurface.material.coefficients()?;
-        Some(Self::of(&channels.map(|channel| medium(&channel)), subsurface.model, LEAST_DISTANCE, millimetres))
+        Some(Self::of(
+            &channels.map(|channel| medium(&channel)),
+            subsurface.model,
+            LEAST_DISTANCE,
+            millimetres,
+        ))
     }
 
     /// Lengths of `media` are millimetres; those of the result are as many of them as `millimetres` says.

@@ -28,7 +28,9 @@ impl Plugin for ScatteringPlugin {
         app.add_systems(
             Update,
             (
-                (body::measure, surface_points::refine, light_gbuffer::run).chain().in_set(Stage::LightGbuffer),
+                (body::measure, surface_points::refine, light_gbuffer::run)
+                    .chain()
+                    .in_set(Stage::LightGbuffer),
                 scattered_radiosity::run.in_set(Stage::ScatteredRadiosity),
                 combine::run.in_set(Stage::Combine),
             )

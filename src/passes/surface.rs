@@ -150,7 +150,8 @@ fn draw(
     ];
     let mut triangles = 0;
     for (pipeline, translucent) in [(&surface.opaque, false), (&surface.translucent, true)] {
-        let mut own = drawn.iter().enumerate().filter(|(_, mesh)| is_translucent(mesh) == translucent).peekable();
+        let mut own =
+            drawn.iter().enumerate().filter(|(_, mesh)| is_translucent(mesh) == translucent).peekable();
         let (Some((_, draw)), Some(_)) = (pipeline, own.peek()) else { continue };
         let bind_group = draw.bind(gpu, &resources);
         for (index, mesh) in own {

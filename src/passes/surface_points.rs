@@ -7,8 +7,8 @@ use super::upload::MeshBuffers;
 use crate::components::{Projection, Subsurface};
 use crate::gpu::Gpu;
 use crate::loading::LoadedMesh;
-use crate::view::{Picture, View};
 use crate::report::Report;
+use crate::view::{Picture, View};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -54,7 +54,8 @@ pub(crate) fn refine(
     let mut held = 0;
     for (entity, mesh, buffers, body, subsurface, points) in &meshes {
         let spacing = spacing(&view, &picture, body, subsurface);
-        let current = points.filter(|points| points.source == *buffers && spacing * HYSTERESIS >= points.spacing);
+        let current =
+            points.filter(|points| points.source == *buffers && spacing * HYSTERESIS >= points.spacing);
         if let Some(points) = current {
             held += points.bytes();
             continue;
@@ -82,7 +83,11 @@ impl SurfacePoints {
 /// the picture shows.
 fn spacing(view: &View, picture: &Picture, body: &Body, subsurface: &Subsurface) -> f64 {
     let mean_free_path = subsurface.material.coefficients().map_or(f64::INFINITY, |channels| {
-        channels.iter().map(|channel| medium(channel).diffusion().sigma_t_prime.recip()).fold(f64::INFINITY, f64::min) / body.millimetres
+        channels
+            .iter()
+            .map(|channel| medium(channel).diffusion().sigma_t_prime.recip())
+            .fold(f64::INFINITY, f64::min)
+            / body.millimetres
     });
     let pixel = PIXELS * pixel(view, picture, body);
     (mean_free_path / 2.0).max(pixel).clamp(SHARES.0, SHARES.1)

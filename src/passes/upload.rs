@@ -1,7 +1,7 @@
 //! What was read goes to the GPU, once, and is let go of on the processor.
 
-use crate::gpu::{Gpu, VolumeFormat};
 use crate::components::Subsurface;
+use crate::gpu::{Gpu, VolumeFormat};
 use crate::loading::{LoadedMesh, LoadedVolume};
 use crate::scene::{Problem, Problems};
 use crate::sources::{MeshData, Samples};
