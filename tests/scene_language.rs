@@ -392,7 +392,11 @@ fn scattering_cameras_find_their_targets_through_reloads() {
     let fewer = other.replace("ScatteringCamera: (target: \"bunny\")", "");
     assert_eq!(reload(&fewer).0, ["from below: candle"]);
     let opaque = other.replace("Subsurface: ()", "Phong: ()");
-    assert_eq!((reload(&opaque).2, reload(&other).0), (1, both), "an error leaves all as it was");
+    assert_eq!((reload(&opaque).2, reload(&other).0), (1, both.clone()), "an error leaves all as it was");
+    let own = format!(r#"{other} "self": ( Subsurface: (), ScatteringCamera: (target: "self") )"#);
+    assert_eq!(reload(&own).0[2], "self: self");
+    assert_eq!(reload(&own).1, 0);
+    assert_eq!(reload(&other).0, both);
     let swapped =
         other.replace("\"candle\"", "\"x\"").replace("\"bunny\"", "\"candle\"").replace("\"x\"", "\"bunny\"");
     assert_eq!(reload(&swapped).0, ["from above: candle", "from below: bunny"]);

@@ -11,8 +11,9 @@ use std::collections::HashMap;
 /// | `target` | name of an entity with a [`Subsurface`] | – | – | – |
 /// | `direction` | vector: where the camera looks, in the scene | – | not zero | (0, -1, 0) |
 ///
-/// The view is orthographic and fitted to the target, so it needs no place; the length of `direction` does not matter. Write one where
-/// the views that [`ScatteringMaps`](super::ScatteringMaps) spreads around a mesh miss a hollow of it.
+/// The view is orthographic and fitted to the target, so it needs no place; the length of `direction` does not matter. Write one
+/// where the views that [`ScatteringMaps`](super::ScatteringMaps) spreads around a mesh miss a hollow of it, as an entity of its own
+/// or on the mesh itself.
 ///
 /// ```ron
 /// "from above": ( ScatteringCamera: (target: "bunny", direction: (0.0, -1.0, 0.0)) )
@@ -45,7 +46,7 @@ impl Validate for ScatteringCamera {
 /// The translucent mesh that a [`ScatteringCamera`] looks at: its `target`, found. Derived in [`Stage::Place`](crate::Stage::Place);
 /// read it, never write it. It is absent while no entity with a [`Subsurface`] has that name.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
-#[relationship(relationship_target = ScatteringCameras)]
+#[relationship(relationship_target = ScatteringCameras, allow_self_referential)]
 pub struct ScatteringCameraOf(pub Entity);
 
 /// The [`ScatteringCamera`]s of a mesh that are written by hand. Derived; absent where there are none.

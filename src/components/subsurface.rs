@@ -148,9 +148,9 @@ fn eta() -> f32 {
 ///
 /// | model | what it is | what it gets wrong |
 /// |---|---|---|
-/// | `StandardDipole` | Jensen et al. 2001, eq. 4: isotropic, the light's direction plays no part | bright where the light grazes; too wide near the entry |
-/// | `DirectionalDipole` | Frisvad, Hachisuka & Kjeldsen 2014: a ray source and its image | the total reflected by a half space |
-/// | `CalibratedDipole` | the same shape, scaled so that this total is right | what no planar model can: corners, thin parts |
+/// | `StandardDipole` | Jensen et al. 2001, eq. 4: two point sources | the direction of the light, which plays no part; the light near its entry |
+/// | `DirectionalDipole` | Frisvad, Hachisuka & Kjeldsen 2014: a ray source and its image | the total: a fifth to a third too bright where little is absorbed, more where much is |
+/// | `CalibratedDipole` | the same, times the number for each colour that gives a half space its exact total | not published; the surface is still taken to be flat |
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Default, PartialEq)]
 pub enum DipoleModel {
