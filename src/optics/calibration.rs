@@ -161,7 +161,7 @@ fn presentable(medium: &Medium) -> Option<Medium> {
 
 /// Streams enough for a thousandth: a phase function that points forward takes more.
 fn streams(medium: &Medium) -> usize {
-    if medium.g.abs() > 0.5 { 40 } else { 20 }
+    if medium.g.abs() > 0.5 { 32 } else { 20 }
 }
 
 /// Cosine outside of a ray at a cosine inside; 0 if there is none.
