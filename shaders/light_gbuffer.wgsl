@@ -1,8 +1,7 @@
 // A mesh as its light sees it: what the light reaches, and in which direction that faces.
 //
 // reads  vertices (position, normal), the mesh
-// writes rgba32float: x and y of the normal in light space (z, towards the light, is not below 0), height towards the light, and the share
-//        of the texel that light reaches, 0 or 1, by which the other three are multiplied, so that texels can be averaged
+// writes rgba32float: normal in light space (z towards the light, so above 0; all 0 where no light arrives), height towards the light
 
 struct LightMesh {
     // To the light's view: x and y across the light, z towards it, in units of the body.
@@ -39,7 +38,5 @@ fn record(in: Varyings) -> @location(0) vec4f {
     let towards_light = across * sign(across.z);
     let facing = normalize(in.normal_in_light);
     let normal = select(-facing, facing, dot(facing, towards_light) >= 0.0);
-    // A normal that leans away from the light takes in as little as one across it.
-    let across_light = select(normal.xy, normalize(normal.xy), normal.z <= 0.0);
-    return mesh.is_lit * vec4f(across_light, in.position_in_light.z, 1.0);
+    return vec4f(mesh.is_lit * normal, in.position_in_light.z);
 }

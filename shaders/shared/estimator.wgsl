@@ -33,36 +33,19 @@ struct Estimator {
     irradiance: vec3f,
 }
 
-// The lit surface at a place.
-struct Lit {
-    // Towards the light z is not below 0.
-    normal: vec3f,
-    height: f32,
-    // Share of the neighbourhood that light reaches; where it is 0, the rest means nothing.
-    coverage: f32,
-}
-
-// The lit surface at a place across the light, over 2^level texels.
-fn lit_at(place: vec2f, level: u32) -> Lit {
-    let at = (place - estimator.low) * estimator.inverse_texel / f32(1u << level);
-    let size = vec2f(textureDimensions(light_gbuffer, level));
+// The point of the lit surface at a place across the light, as (normal, height); the normal is 0 where no light arrives.
+fn lit_at(place: vec2f) -> vec4f {
+    let at = (place - estimator.low) * estimator.inverse_texel;
+    let size = vec2f(textureDimensions(light_gbuffer));
     if any(at < vec2f(0.0)) || any(at >= size) {
-        return Lit(vec3f(0.0), 0.0, 0.0);
+        return vec4f(0.0);
     }
     // The first row of a texture is the top.
-    let texel = textureLoad(light_gbuffer, vec2u(vec2f(at.x, size.y - 1.0 - floor(at.y))), level);
-    let mean = texel.xyz / max(texel.w, 1e-6);
-    let normal = vec3f(mean.xy, sqrt(max(1.0 - dot(mean.xy, mean.xy), 0.0)));
+    let texel = textureLoad(light_gbuffer, vec2u(vec2f(at.x, size.y - 1.0 - floor(at.y))), 0);
     // From the middle of the texel to the place, along the tangent plane. Steep planes are not to be trusted that far.
-    let aside = (fract(at) - 0.5) * f32(1u << level) / estimator.inverse_texel;
-    let slope = -normal.xy / max(normal.z, 0.25);
-    return Lit(normal, mean.z + dot(slope, aside), texel.w);
-}
-
-// The level whose texels are as large as the share of the disc that a sample stands for.
-fn level_of(area: f32) -> u32 {
-    let texels = FOOTPRINT * sqrt(area) * estimator.inverse_texel.x;
-    return u32(clamp(log2(max(texels, 1.0)), 0.0, f32(textureNumLevels(light_gbuffer) - 1u)));
+    let aside = (fract(at) - 0.5) / estimator.inverse_texel;
+    let slope = -texel.xy / max(texel.z, 0.25);
+    return vec4f(texel.xyz, texel.w + dot(slope, aside));
 }
 
 // What leaves at a point for a unit of irradiance. `n_o` is of unit length and points away from the body.
@@ -72,11 +55,10 @@ fn scattered(medium: Medium, x_o: vec3f, n_o: vec3f, index: u32) -> vec3f {
     var sum = vec3f(0.0);
     for (var i = 0u; i < disc.samples; i += 1u) {
         let sample = disc_sample(disc, i);
-        let lit = lit_at(x_o.xy + sample.xy, level_of(sample.z));
-        let between = vec3f(-sample.xy, x_o.z - lit.height);
-        let weight = sample.z * lit.coverage;
-        if weight > 0.0 {
-            sum += weight * subsurface(medium, between, lit.normal, TO_LIGHT, n_o);
+        let lit = lit_at(x_o.xy + sample.xy);
+        let between = vec3f(-sample.xy, x_o.z - lit.w);
+        if any(lit.xyz != vec3f(0.0)) && sample.z > 0.0 {
+            sum += sample.z * subsurface(medium, between, normalize(lit.xyz), TO_LIGHT, n_o);
         }
     }
     return sum;

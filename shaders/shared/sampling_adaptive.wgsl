@@ -4,9 +4,6 @@
 // integrand is 0 at both ends of u and periodic in the angle, so a lattice converges fast where the light is smooth. Each point shifts
 // the lattice by an amount of its own.
 
-// Sides of the texels that a sample reads, as a share of the side of what it stands for.
-const FOOTPRINT = 0.5;
-
 const PI = 3.14159265358979;
 
 struct Disc {
@@ -31,9 +28,9 @@ fn hash(seed: vec2u) -> vec2f {
 
 fn disc_of(x_o: vec3f, index: u32) -> Disc {
     // Below the lit surface the kernel is as wide as the point is deep.
-    let above = lit_at(x_o.xy, 0u);
-    let depth = select(0.0, max(above.height - x_o.z, 0.0), above.coverage > 0.0);
-    let core = estimator.core + 0.3 * depth;
+    let above = lit_at(x_o.xy);
+    let depth = select(0.0, max(above.w - x_o.z, 0.0), any(above.xyz != vec3f(0.0)));
+    let core = estimator.core + 0.05 * depth;
     // Beyond e^-14 there is nothing to see: where mu sqrt(depth^2 + radius^2) exceeds mu depth by 14.
     let fade = 14.0 / max(estimator.least_mu, 1e-20);
     let radius = min(sqrt(fade) * sqrt(fade + 2.0 * depth), estimator.radius);

@@ -15,7 +15,6 @@ macro_rules! sources {
 
 sources! {
     "bssrdf" => "shared/bssrdf.wgsl",
-    "coarsen" => "coarsen.wgsl",
     "combine" => "combine.wgsl",
     "estimator" => "shared/estimator.wgsl",
     "frame" => "shared/frame.wgsl",

@@ -13,17 +13,6 @@ pub struct Target {
 impl Target {
     /// A target of `size` pixels.
     pub fn new(gpu: &Gpu, label: &str, size: UVec2, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
-        Self::with_levels(gpu, label, size, format, 1)
-    }
-
-    /// A target of `size` pixels with so many levels, each of half the size of the one before.
-    pub fn with_levels(
-        gpu: &Gpu,
-        label: &str,
-        size: UVec2,
-        format: wgpu::TextureFormat,
-        levels: u32,
-    ) -> Result<Self, GpuError> {
         let limit = gpu.device.limits().max_texture_dimension_2d;
         if size.max_element() > limit {
             return Err(GpuError::PictureTooLarge { width: size.x, height: size.y, limit });
@@ -31,7 +20,7 @@ impl Target {
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-            mip_level_count: levels,
+            mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format,
@@ -41,15 +30,6 @@ impl Target {
             view_formats: &[],
         });
         Ok(Self { view: texture.create_view(&Default::default()), texture })
-    }
-
-    /// One level of it.
-    pub fn level(&self, level: u32) -> wgpu::TextureView {
-        self.texture.create_view(&wgpu::TextureViewDescriptor {
-            base_mip_level: level,
-            mip_level_count: Some(1),
-            ..Default::default()
-        })
     }
 
     /// Begins a pass that clears this target and draws what is nearest, with reversed depth.
@@ -64,7 +44,7 @@ impl Target {
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(label),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.level(0),
+                view: &self.view,
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
@@ -85,10 +65,7 @@ impl Target {
     /// Bytes that the texels take.
     pub fn bytes(&self) -> u64 {
         let texel = u64::from(self.texture.format().block_copy_size(None).unwrap_or(4));
-        let side = |length: u32, level: u32| u64::from((length >> level).max(1));
-        (0..self.texture.mip_level_count())
-            .map(|level| side(self.texture.width(), level) * side(self.texture.height(), level) * texel)
-            .sum()
+        u64::from(self.texture.width()) * u64::from(self.texture.height()) * texel
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a directional light reaches of a mesh that scatters, seen from the light.
 //!
 //! Reads vertices; writes, for each such mesh and light, a [`LightView`], rgba32float: the normal in the light's space (all 0 where no
-//! light arrives) and the height towards the light, with coarser levels. Its orthographic view is fitted to the mesh, and other meshes stand in its way.
+//! light arrives) and the height towards the light. Its orthographic view is fitted to the mesh, and other meshes stand in its way.
 //! Reruns when the light's direction, the mesh, its placement or what stands between the two changes; a driver without memory fails it.
 
 use super::body::Body;
@@ -79,7 +79,6 @@ mirror! {
 #[derive(Resource, Default, Debug)]
 pub(crate) struct LightGbuffer {
     draw: Option<Draw>,
-    coarsen: Option<Draw>,
     version: u64,
 }
 
@@ -87,9 +86,6 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
 /// Texels along the longer side of a view.
 const TEXELS: u32 = 512;
-
-/// Levels of a view: far from a point, texels are read many at a time.
-const LEVELS: u32 = 6;
 
 /// Bytes of all views of a mesh together, at most; with many lights each gets fewer texels.
 const BUDGET: u64 = 256 << 20;
@@ -184,9 +180,7 @@ fn frame(
     let longer = TEXELS.min(affordable).max(16);
     // Half a texel to spare on each side, and no view without any width.
     let texel = ((high - low).truncate().max_element() / f64::from(longer - 1)).max(1e-6);
-    // Whole texels at every level.
-    let step = 1 << (LEVELS - 1);
-    let size = (((high - low).truncate() / texel).ceil().as_uvec2() + 1).map(|side| side.next_multiple_of(step));
+    let size = ((high - low).truncate() / texel).ceil().as_uvec2() + 1;
     let spare = (size.as_dvec2() * texel - (high - low).truncate()) / 2.0;
     let (low, high) = (low - spare.extend(1e-3), high + spare.extend(1e-3));
     (LightFrame { light_from_body, low, high, size }, high.z)
@@ -228,11 +222,10 @@ fn draw(
 ) -> Result<Target, GpuError> {
     if state.draw.is_none() {
         state.draw = Some(make(gpu)?);
-        state.coarsen = Some(make_coarsen(gpu)?);
-        report.pipelines.extend(["light_gbuffer", "coarsen"]);
+        report.pipelines.push("light_gbuffer");
     }
     let frame = &recipe.frame;
-    let target = Target::with_levels(gpu, "light_gbuffer", frame.size, FORMAT, LEVELS)?;
+    let target = Target::new(gpu, "light_gbuffer", frame.size, FORMAT)?;
     let depth = Target::new(gpu, "light_gbuffer depth", frame.size, wgpu::TextureFormat::Depth32Float)?;
     let drawn: Vec<_> = std::iter::once((&recipe.mesh, true))
         .chain(recipe.blockers.iter().map(|blocker| (blocker, false)))
@@ -255,36 +248,11 @@ fn draw(
     }
     drop(pass);
     gpu.queue.submit([encoder.finish()]);
-    coarsen(gpu, state, &target);
     report.ran(
         "light_gbuffer",
         &[("texels", u64::from(frame.size.x) * u64::from(frame.size.y)), ("triangles", triangles)],
     );
     Ok(target)
-}
-
-/// Derives the coarser levels of a view.
-fn coarsen(gpu: &Gpu, state: &LightGbuffer, target: &Target) {
-    let Some(draw) = &state.coarsen else { return };
-    for level in 1..LEVELS {
-        let finer = target.level(level - 1);
-        draw.cover(gpu, &[wgpu::BindingResource::TextureView(&finer)], &target.level(level), None);
-    }
-}
-
-fn make_coarsen(gpu: &Gpu) -> Result<Draw, GpuError> {
-    Draw::new(
-        gpu,
-        &DrawDescriptor {
-            name: "coarsen",
-            generated: &[],
-            entry_points: ("cover", "coarsen"),
-            bindings: &[binding::TEXTURE],
-            vertex_buffers: &[],
-            format: FORMAT,
-            depth: false,
-        },
-    )
 }
 
 fn make(gpu: &Gpu) -> Result<Draw, GpuError> {
