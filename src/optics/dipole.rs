@@ -94,7 +94,7 @@ impl DirectionalDipole {
     }
 
     /// The diffuse part `S_d = S'(x, omega_12, d_r) - S'(x_o - x_v, omega_v, d_v)` of the BSSRDF without the Fresnel transmittances
-    /// at entry and exit (equation 17), per unit of area and steradian. 0 in a medium that does not scatter.
+    /// at entry and exit, per unit of area and steradian. 0 in a medium that does not scatter.
     ///
     /// It can be negative, where the model has no meaning: clamp it, per wavelength. The difference is taken term by term: real and
     /// virtual part agree in most digits far from the entry.
@@ -124,7 +124,7 @@ impl DirectionalDipole {
         }
     }
 
-    /// Places the sources (sections 4.1 to 4.3).
+    /// Places the sources: the real one along the refracted light, the virtual one mirrored in a plane along the way to the exit.
     fn pair(&self, entry: &Entry, exit: &Exit) -> Pair {
         let Diffusion { sigma_t, sigma_t_prime, d_e, .. } = self.diffusion;
         let (w, n_o) = (entry.direction, exit.normal);
@@ -164,7 +164,7 @@ impl DirectionalDipole {
         self.ray_source(pair.x - pair.n_star * pair.h, w, pair.n_o, pair.d_v)
     }
 
-    /// `S'(x, w, rho)`: what a ray source emits through the boundary, `rho` standing in for the length of x (equation 9).
+    /// `S'(x, w, rho)`: what a ray source emits through the boundary, `rho` standing in for the length of x.
     fn ray_source(&self, x: DVec3, w: DVec3, n_o: DVec3, rho: f64) -> f64 {
         let Boundary { c_phi, c_e, .. } = self.boundary;
         let mu_rho = self.mu() * rho;

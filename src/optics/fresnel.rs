@@ -39,8 +39,8 @@ pub fn refract(omega_i: DVec3, normal: DVec3, eta: f64) -> Option<DVec3> {
     (squared >= 0.0).then(|| (normal * (cos - squared.sqrt()) - omega_i) / eta)
 }
 
-/// Jensen's polynomial for the diffuse Fresnel reflectance `2 C1`, which the standard dipole uses (Egan and Hilgeman 1973; Jensen,
-/// Marschner, Levoy and Hanrahan 2001, section 2.3).
+/// Jensen's polynomial for the diffuse Fresnel reflectance `2 C1`, which the standard dipole uses (Jensen, Marschner, Levoy and
+/// Hanrahan 2001, "A practical model for subsurface light transport", after Egan and others).
 pub fn diffuse_reflectance_polynomial(eta: f64) -> f64 {
     if eta < 1.0 {
         -0.4399 + 0.7099 / eta - 0.3319 / (eta * eta) + 0.0636 / eta.powi(3)

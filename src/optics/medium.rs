@@ -40,8 +40,8 @@ pub struct Diffusion {
 }
 
 impl Medium {
-    /// What diffusion theory needs to know (Frisvad, Hachisuka and Kjeldsen 2014, "Directional dipole model for subsurface
-    /// scattering", section 3).
+    /// What diffusion theory needs to know, as Frisvad, Hachisuka and Kjeldsen (2014), "Directional dipole model for subsurface
+    /// scattering", define it.
     pub fn diffusion(&self) -> Diffusion {
         let Self { sigma_a, sigma_s, g, .. } = *self;
         let sigma_s_prime = sigma_s * (1.0 - g);

@@ -35,7 +35,7 @@ pub fn sphere_point(u: f64, v: f64) -> DVec3 {
 
 /// A distribution of points over a disc, thinning out from its centre as `e^(-sigma r)`.
 ///
-/// It is how Dal Corso, Frisvad, Mosegaard and Bærentzen (2016), "Interactive directional subsurface scattering and transport of
+/// It is how Dal Corso, Frisvad, Mosegaard and Bærentzen (2017), "Interactive directional subsurface scattering and transport of
 /// emergent light", place the points where light may have entered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExponentialDisc {

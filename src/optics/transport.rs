@@ -2,7 +2,7 @@
 //!
 //! Only what does not depend on the azimuth is followed, which is all that the reflected power takes. The half space is cut into
 //! streams, directions at the nodes of a quadrature; what it reflects comes of doubling one layer until no light gets through (van de
-//! Hulst 1980, "Multiple light scattering", chapter 4). The first layer is Wiscombe's diamond (1976, "On initialization, error and
+//! Hulst 1980, "Multiple light scattering"). The first layer is Wiscombe's diamond (1976, "On initialization, error and
 //! flux conservation in the doubling method"). A diamond is Cayley's transform of the equation of transport, which keeps the directions
 //! that die out with depth: so the limit is that of the streams themselves, however thick the first layer is.
 
@@ -95,7 +95,7 @@ impl Scattering {
 impl HalfSpace {
     /// Doubles layers of `medium`, with the light in `streams` directions downwards and as many upwards; some 20 give four digits.
     ///
-    /// The medium has to scatter, and its coefficients and `eta` have to be finite; `eta` is positive.
+    /// Coefficients are finite and not all 0; `eta` is finite and positive.
     pub fn new(medium: &Medium, streams: usize) -> Self {
         let streams = streams.max(8);
         // Found by trial: with twice as many orders as streams a narrow peak falls between the streams.
@@ -140,6 +140,9 @@ impl HalfSpace {
     /// 1943; as `a r + r a = b + r b r` it holds `r` itself): `(a - r b + kappa) up = r b_down + b_up`, with `kappa` the
     /// extinction along the beam and `b` what a beam of unit power scatters into the streams.
     pub(super) fn reflectance_of_entered(&self, cos: f64) -> f64 {
+        if self.scattering.albedo <= 0.0 {
+            return 0.0;
+        }
         // At the horizon nothing is left to divide by.
         let mu0 = cosine_inside(cos, self.eta).max(1e-9);
         // A beam and its retro-reflection, which die out together.
@@ -180,13 +183,13 @@ fn cosine_inside(cos: f64, eta: f64) -> f64 {
 /// Cosines and weights of the streams.
 ///
 /// Where light is totally reflected inside, no panel reaches over the critical angle, and the one above it follows the root with which
-/// the reflectance falls there.
+/// the reflectance falls there. It gets the more streams per cosine.
 fn quadrature(eta: f64, streams: usize) -> Vec<(f64, f64)> {
-    if eta <= 1.0 {
+    let critical = ((eta - 1.0) * (eta + 1.0)).max(0.0).sqrt() / eta;
+    if critical < 0.01 {
         return gauss_legendre(streams, 0.0, 1.0);
     }
-    let critical = ((eta - 1.0) * (eta + 1.0)).sqrt() / eta;
-    let (lower, width) = ((streams as f64 * 0.65 * critical) as usize, 1.0 - critical);
+    let (lower, width) = (((streams as f64 * 0.65 * critical) as usize).max(4), 1.0 - critical);
     let mut nodes = gauss_legendre(lower, 0.0, critical);
     let above = gauss_legendre(streams - lower, 0.0, 1.0).into_iter();
     nodes.extend(above.map(|(t, weight)| (critical + width * t * t, 2.0 * width * t * weight)));

@@ -90,6 +90,18 @@ fn all_light_leaves_a_medium_that_does_not_absorb() {
 }
 
 #[test]
+fn a_slight_contrast_makes_a_slight_difference() {
+    for (albedo_prime, g) in [(0.5, 0.0), (0.9, 0.0), (0.9, 0.8), (0.99, -0.5)] {
+        let reflected = |eta| exact_reflectance(&of_albedo(albedo_prime, g, eta), &[0.8])[0];
+        for contrast in [1e-12, 1e-6, 3e-5, 1e-4, 1e-3, 3e-3, 1e-2] {
+            let what = format!("albedo' {albedo_prime}, g {g}, a contrast of {contrast}");
+            close(reflected(1.0 + contrast), reflected(1.0), 1.0, 1e-5 + 3.0 * contrast, &what);
+            close(reflected(1.0 - contrast), reflected(1.0), 1.0, 1e-5 + 3.0 * contrast, &what);
+        }
+    }
+}
+
+#[test]
 fn more_absorption_reflects_less() {
     for g in [-0.9, 0.0, 0.9] {
         let mut before = 1.0;
@@ -105,7 +117,7 @@ fn more_absorption_reflects_less() {
 fn a_dim_medium_scatters_once() {
     let (albedo, mu) = (1e-6, 0.6f64);
     let medium = |g| Medium { sigma_a: 1.0 - albedo, sigma_s: albedo, g, eta: 1.0 };
-    // Light that is spread evenly: albedo / 2 times the integral of mu' / (mu + mu') (Chandrasekhar 1960, chapter III).
+    // Light that is spread evenly: albedo / 2 times the integral of mu' / (mu + mu') (Chandrasekhar 1960, "Radiative transfer").
     let evenly = albedo / 2.0 * (1.0 - mu * (1.0 / mu).ln_1p());
     close(exact_reflectance(&medium(0.0), &[mu])[0], evenly, evenly, 1e-5, "evenly");
     // Light that turns round: half of it, after two ways through the same depth.

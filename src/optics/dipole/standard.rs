@@ -27,7 +27,7 @@ impl StandardDipole {
         Self { diffusion: medium.diffusion(), a: (1.0 + reflected) / (1.0 - reflected) }
     }
 
-    /// Diffuse reflectance per unit of area at the distance `r` from the entry (equation 4). 0 in a medium that does not scatter.
+    /// Diffuse reflectance per unit of area at the distance `r` from the entry. 0 in a medium that does not scatter.
     pub fn r_d(&self, r: f64) -> f64 {
         let Diffusion { sigma_s_prime, sigma_t_prime, albedo_prime, d, mu, .. } = self.diffusion;
         if sigma_s_prime <= 0.0 {
@@ -41,7 +41,7 @@ impl StandardDipole {
         albedo_prime / (4.0 * PI) * (source(z_r) + source(z_r + 4.0 * self.a * d))
     }
 
-    /// Integral of [`Self::r_d`] over the plane (equation 15 of Jensen and Buhler 2002).
+    /// Integral of [`Self::r_d`] over the plane (Jensen and Buhler 2002, "A rapid hierarchical rendering technique for translucent materials").
     pub fn total(&self) -> f64 {
         let Diffusion { albedo_prime, one_minus_albedo_prime, .. } = self.diffusion;
         let s = (3.0 * one_minus_albedo_prime).sqrt();
