@@ -51,7 +51,7 @@ pub fn all() -> Vec<Mirror> {
     vec![
         view::FrameUniform::mirror(),
         view::LightUniform::mirror(),
-        passes::light_gbuffer::LightMeshUniform::mirror(),
+        passes::gbuffer::SeenMeshUniform::mirror(),
         passes::medium::MediumUniform::mirror(),
         passes::scattered_radiosity::EstimatorUniform::mirror(),
         passes::combine::CombinationUniform::mirror(),

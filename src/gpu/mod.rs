@@ -18,5 +18,5 @@ pub use error::GpuError;
 pub use formats::{Filtering, VolumeFormat};
 pub use kernel::{Kernel, KernelDescriptor};
 pub use readback::{read_buffer, read_texture};
-pub use target::{Target, texture_of};
+pub use target::{Layers, Target, begin, texture_of};
 pub use timer::PassTimer;

@@ -20,7 +20,7 @@ sources! {
     "frame" => "shared/frame.wgsl",
     "fresnel" => "shared/fresnel.wgsl",
     "fullscreen" => "shared/fullscreen.wgsl",
-    "light_gbuffer" => "light_gbuffer.wgsl",
+    "gbuffer" => "gbuffer.wgsl",
     "raycast" => "raycast.wgsl",
     "sampling_adaptive" => "shared/sampling_adaptive.wgsl",
     "scattered_radiosity" => "scattered_radiosity.wgsl",

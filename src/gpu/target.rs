@@ -32,41 +32,89 @@ impl Target {
         Ok(Self { view: texture.create_view(&Default::default()), texture })
     }
 
-    /// Begins a pass that clears this target and draws what is nearest, with reversed depth.
-    pub fn begin<'encoder>(
-        &self,
-        encoder: &'encoder mut wgpu::CommandEncoder,
-        label: &str,
-        clear: wgpu::Color,
-        depth: &Self,
-        timing: Option<wgpu::RenderPassTimestampWrites>,
-    ) -> wgpu::RenderPass<'encoder> {
-        encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+    /// Bytes that the texels take.
+    pub fn bytes(&self) -> u64 {
+        let texel = u64::from(self.texture.format().block_copy_size(None).unwrap_or(4));
+        u64::from(self.texture.width()) * u64::from(self.texture.height()) * texel
+    }
+}
+
+/// 2D textures of one size, one above the other, that draws or kernels write and kernels read.
+#[derive(Debug)]
+pub struct Layers {
+    /// All of them.
+    pub texture: wgpu::Texture,
+    /// All of them.
+    pub view: wgpu::TextureView,
+}
+
+impl Layers {
+    /// So many layers of `size` texels, rgba32float.
+    pub fn new(gpu: &Gpu, label: &str, size: UVec2, layers: u32) -> Self {
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
-            })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &depth.view,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(0.0),
-                    store: wgpu::StoreOp::Discard,
-                }),
-                stencil_ops: None,
-            }),
-            timestamp_writes: timing,
+            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: layers },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Float,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::STORAGE_BINDING,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        });
+        Self { texture, view }
+    }
+
+    /// One layer, to draw on.
+    pub fn layer(&self, layer: u32) -> wgpu::TextureView {
+        self.texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2),
+            base_array_layer: layer,
+            array_layer_count: Some(1),
             ..Default::default()
         })
     }
 
     /// Bytes that the texels take.
     pub fn bytes(&self) -> u64 {
-        let texel = u64::from(self.texture.format().block_copy_size(None).unwrap_or(4));
-        u64::from(self.texture.width()) * u64::from(self.texture.height()) * texel
+        let size = self.texture.size();
+        16 * u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
     }
+}
+
+/// Begins a pass that clears `colour` and draws what is nearest, with reversed depth.
+pub fn begin<'encoder>(
+    encoder: &'encoder mut wgpu::CommandEncoder,
+    label: &str,
+    clear: wgpu::Color,
+    colour: &wgpu::TextureView,
+    depth: &wgpu::TextureView,
+    timing: Option<wgpu::RenderPassTimestampWrites>,
+) -> wgpu::RenderPass<'encoder> {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: colour,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: depth,
+            depth_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Clear(0.0),
+                store: wgpu::StoreOp::Discard,
+            }),
+            stencil_ops: None,
+        }),
+        timestamp_writes: timing,
+        ..Default::default()
+    })
 }
 
 /// A 2D texture of these texels, row by row.

@@ -3,6 +3,7 @@
 pub(crate) mod body;
 pub mod classify;
 pub mod combine;
+pub mod gbuffer;
 pub mod light_gbuffer;
 pub mod medium;
 pub mod raycast;
@@ -21,7 +22,8 @@ pub(crate) struct ScatteringPlugin;
 
 impl Plugin for ScatteringPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<light_gbuffer::LightGbuffer>()
+        app.init_resource::<gbuffer::Gbuffer>()
+            .init_resource::<light_gbuffer::LightViewVersion>()
             .init_resource::<scattered_radiosity::Scatterer>()
             .init_resource::<combine::Combiner>();
         let there_is_a_gpu = resource_exists::<Gpu>;

@@ -5,7 +5,8 @@
 //! long as nothing does, further sets of samples can be averaged in.
 
 use super::body::Body;
-use super::light_gbuffer::{LightFrame, LightView, LightViews};
+use super::gbuffer::OrthographicView;
+use super::light_gbuffer::{LightView, LightViews};
 use super::medium::MediumUniform;
 use super::surface_points::SurfacePoints;
 use super::upload::MeshBuffers;
@@ -173,7 +174,7 @@ impl Job<'_> {
         }
         let Some(kernel) = scatterer.kernels.get(&standard) else { return Ok(()) };
         let medium = uniform_buffer(self.gpu, "medium", self.medium);
-        let estimator = uniform_buffer(self.gpu, "estimator", &self.estimator(&view.frame, layer));
+        let estimator = uniform_buffer(self.gpu, "estimator", &self.estimator(&view.view, layer));
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let resources = [
             medium.as_entire_binding(),
@@ -188,15 +189,15 @@ impl Job<'_> {
         Ok(())
     }
 
-    fn estimator(&self, frame: &LightFrame, layer: usize) -> EstimatorUniform {
-        let light_from_mesh = frame.light_from_body * self.body.body_from_mesh;
+    fn estimator(&self, view: &OrthographicView, layer: usize) -> EstimatorUniform {
+        let light_from_mesh = view.view_from_body * self.body.body_from_mesh;
         let largest = self.medium.sigma_t_prime.max_element();
         let least_mu = (self.medium.mu * self.medium.sigma_t_prime).min_element();
         EstimatorUniform {
             light_from_mesh: DMat4::from(light_from_mesh).as_mat4(),
             light_from_mesh_normal: normal_matrix(light_from_mesh).as_mat4(),
-            low: frame.low.truncate().as_vec2(),
-            inverse_texel: Vec2::splat(frame.texels_per_length() as f32),
+            low: view.low.truncate().as_vec2(),
+            inverse_texel: Vec2::splat(view.texels_per_length() as f32),
             samples: self.maps.samples,
             pass_index: 0,
             candidates: self.maps.samples,

@@ -8,7 +8,7 @@ use super::combine::Radiosity;
 use super::surface_points::SurfacePoints;
 use super::upload::MeshBuffers;
 use crate::components::{Phong, Placement, SceneSettings, Subsurface};
-use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, binding, uniform_each};
+use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, begin, binding, uniform_each};
 use crate::render::Failure;
 use crate::view::{FrameBuffers, Picture, View, far_background, lights_module, to_eye};
 use crate::{Stage, mirrors::mirror, report::Report};
@@ -140,7 +140,7 @@ fn draw(
     let mut encoder =
         gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("surface") });
     let clear = clear_colour(background);
-    let mut pass = targets.colour.begin(&mut encoder, "surface", clear, &targets.depth, timing);
+    let mut pass = begin(&mut encoder, "surface", clear, &targets.colour.view, &targets.depth.view, timing);
     let one = std::num::NonZeroU64::new(MeshInstance::SHADER_SIZE.get());
     let instance = wgpu::BufferBinding { buffer: &instance_buffer, offset: 0, size: one };
     let resources = [
