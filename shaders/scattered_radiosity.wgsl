@@ -1,10 +1,11 @@
 // What the light that entered a translucent body elsewhere sends out of it, point by point: M_o, for each point a sum over samples of
 // the lit surface (see estimator). The radiance that leaves in the direction omega_o is T(eta, omega_o) M_o.
 //
-// reads  points (vertices of the refined mesh), the light G-buffer
+// reads  points (vertices of the refined mesh; all of them, or those on a list), the light G-buffer
 // writes one vec4f a point: mean over all sets of samples so far of M_o for the light's irradiance (or per unit of it)
 
 #import estimator
+#import listing
 
 @group(0) @binding(0) var<uniform> medium: Medium;
 @group(0) @binding(1) var<uniform> estimator: Estimator;
@@ -14,11 +15,12 @@
 @group(0) @binding(4) var<storage, read_write> radiosity: array<vec4f>;
 
 @compute @workgroup_size(64)
-fn at_vertices(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let index = id.x + id.y * groups.x * 64u;
-    if index >= estimator.points {
+fn at_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let invocation = id.x + id.y * groups.x * 64u;
+    if invocation >= listed_points() {
         return;
     }
+    let index = listed_point(invocation);
     let at = 6u * index;
     let position = vec3f(vertices[at], vertices[at + 1u], vertices[at + 2u]);
     let normal = vec3f(vertices[at + 3u], vertices[at + 4u], vertices[at + 5u]);

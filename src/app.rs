@@ -21,6 +21,8 @@ pub enum Stage {
     View,
     /// What each light reaches of the meshes that scatter.
     LightGbuffer,
+    /// What their scattering cameras see of them, where maps are asked for.
+    ScatteringGbuffer,
     /// The light that leaves those meshes, point by point.
     ScatteredRadiosity,
     /// The same of all lights together.
@@ -34,7 +36,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    const ALL: [Self; 12] = [
+    const ALL: [Self; 13] = [
         Self::Animate,
         Self::Place,
         Self::Load,
@@ -42,6 +44,7 @@ impl Stage {
         Self::Classify,
         Self::View,
         Self::LightGbuffer,
+        Self::ScatteringGbuffer,
         Self::ScatteredRadiosity,
         Self::Combine,
         Self::Surface,

@@ -53,6 +53,9 @@ pub fn all() -> Vec<Mirror> {
         view::LightUniform::mirror(),
         passes::gbuffer::SeenMeshUniform::mirror(),
         passes::medium::MediumUniform::mirror(),
+        passes::scattering_gbuffer::MapCameraUniform::mirror(),
+        passes::scattering_gbuffer::MapsUniform::mirror(),
+        passes::scattered_radiosity::GatheringUniform::mirror(),
         passes::scattered_radiosity::EstimatorUniform::mirror(),
         passes::combine::CombinationUniform::mirror(),
         passes::surface::MeshInstance::mirror(),
@@ -68,6 +71,7 @@ pub fn generated_modules() -> Vec<(&'static str, String)> {
     vec![
         ("volumes", passes::raycast::volumes_module(&[Sampler, Shader], true)),
         view::lights_module(4),
-        passes::scattered_radiosity::sampling_module(false),
+        passes::scattered_radiosity::sampling_module(&Default::default(), 5),
+        passes::scattered_radiosity::listing_module(false),
     ]
 }

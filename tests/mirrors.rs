@@ -8,7 +8,7 @@ use tyndall::mirrors::{self, Mirror};
 /// The generated modules, for two volumes of which the shader interpolates one.
 fn shaders() -> Vec<(&'static str, naga::Module, String)> {
     let generated = mirrors::generated_modules();
-    ["gbuffer", "scattered_radiosity", "combine", "surface", "raycast", "tonemap"]
+    ["gbuffer", "scattering_texels", "scattered_texels", "gather", "scattered_radiosity", "combine", "surface", "raycast", "tonemap"]
         .into_iter()
         .map(|name| {
             let text = shader::expand(name, &generated).unwrap();

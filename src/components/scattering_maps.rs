@@ -9,7 +9,7 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 /// | `strategy` | `Adaptive` or `Uniform` | – | – | `Adaptive` |
 /// | `cameras` | scattering cameras that the program spreads around the mesh | – | 0 to 64 | 16 |
 /// | `samples` | points of the light for each point of the surface and each light | – | 1 to 1,024 | 48 |
-/// | `candidates` | `Auto`, or points of which the `samples` nearest are used | – | `samples` to 65,536 | `Auto` |
+/// | `candidates` | `Auto`, or points of which the `samples` nearest are used | – | `samples` to 4,096 | `Auto` |
 /// | `resolution` | `Auto`, or `Texels(w, h)` of each camera's map | texels | 1 to 4,096 | `Auto` |
 /// | `radius` | `Auto`, or `Millimetres(r)` of the disc that samples lie in | mm | above 0 | `Auto` |
 /// | `bias` | `Auto`, or how far behind what a map shows a point still counts as seen | the mesh's radius | 0 to 1 | `Auto` |
@@ -49,7 +49,7 @@ pub struct ScatteringMaps {
     #[reflect(@Range::new(1.0, 1024.0))]
     pub samples: u32,
     /// Points of the light of which the nearest are used.
-    #[reflect(@Range::new(1.0, 65_536.0))]
+    #[reflect(@Range::new(1.0, 4096.0))]
     pub candidates: Auto<u32>,
     /// Texels of each camera's map.
     pub resolution: MapResolution,

@@ -48,7 +48,11 @@ pub fn uniform_each<T: ShaderType + ShaderSize + WriteInto>(
 
 /// A storage buffer of zeros that kernels write, and draws may take vertices from.
 pub fn storage(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
-    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_SRC;
+    let usage = wgpu::BufferUsages::STORAGE
+        | wgpu::BufferUsages::VERTEX
+        | wgpu::BufferUsages::INDIRECT
+        | wgpu::BufferUsages::COPY_SRC
+        | wgpu::BufferUsages::COPY_DST;
     let label = Some(label);
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label,
@@ -56,6 +60,13 @@ pub fn storage(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
         usage,
         mapped_at_creation: false,
     })
+}
+
+/// A storage buffer of structs in WGSL's layout, for kernels to read.
+pub fn storage_array<T: ShaderType + ShaderSize + WriteInto>(gpu: &Gpu, label: &str, values: &[T]) -> wgpu::Buffer {
+    let mut bytes = StorageBuffer::new(Vec::<u8>::new());
+    let _ = bytes.write(&values);
+    storage_of(gpu, label, &bytes.into_inner())
 }
 
 /// A storage buffer of these bytes, for kernels to read.

@@ -168,6 +168,14 @@ pub mod binding {
     pub const STORAGE: wgpu::BindingType = storage(true);
     /// A storage buffer that is written.
     pub const STORAGE_OUT: wgpu::BindingType = storage(false);
+    /// Layers of 2D textures of floats, read texel by texel.
+    pub const LAYERS: wgpu::BindingType = texture(wgpu::TextureViewDimension::D2Array, false);
+    /// Layers of 2D textures, rgba32float, that a kernel writes.
+    pub const LAYERS_OUT: wgpu::BindingType = wgpu::BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format: wgpu::TextureFormat::Rgba32Float,
+        view_dimension: wgpu::TextureViewDimension::D2Array,
+    };
     /// A 2D texture of unsigned integers.
     pub const INTEGERS: wgpu::BindingType = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Uint,

@@ -63,7 +63,7 @@ impl Kernel {
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         resources: &[wgpu::BindingResource],
-        invocations: u32,
+        invocations: Invocations,
         timing: Option<wgpu::ComputePassTimestampWrites>,
     ) {
         let bind_group = super::draw::bind(gpu, self.label, &self.layout, resources);
@@ -73,9 +73,23 @@ impl Kernel {
         });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &bind_group, &[]);
-        // No dimension may have more than 65,535 workgroups.
-        let groups = invocations.div_ceil(Self::WORKGROUP);
-        let across = groups.clamp(1, 32_768);
-        pass.dispatch_workgroups(across, groups.div_ceil(across), 1);
+        match invocations {
+            // No dimension may have more than 65,535 workgroups.
+            Invocations::Count(count) => {
+                let groups = count.div_ceil(Self::WORKGROUP);
+                let across = groups.clamp(1, 32_768);
+                pass.dispatch_workgroups(across, groups.div_ceil(across), 1);
+            }
+            Invocations::Planned(buffer, offset) => pass.dispatch_workgroups_indirect(buffer, offset),
+        }
     }
+}
+
+/// How often a kernel runs.
+#[derive(Clone, Copy, Debug)]
+pub enum Invocations<'a> {
+    /// So often.
+    Count(u32),
+    /// As an earlier kernel wrote into a buffer, at an offset in bytes: workgroups across, down and deep.
+    Planned(&'a wgpu::Buffer, u64),
 }

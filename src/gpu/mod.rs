@@ -11,12 +11,12 @@ pub mod shader;
 mod target;
 mod timer;
 
-pub use buffer::{storage, storage_of, uniform_array, uniform_buffer, uniform_each};
+pub use buffer::{storage, storage_array, storage_of, uniform_array, uniform_buffer, uniform_each};
 pub use device::{Gpu, GpuOptions};
 pub use draw::{Draw, DrawDescriptor, binding};
 pub use error::GpuError;
 pub use formats::{Filtering, VolumeFormat};
-pub use kernel::{Kernel, KernelDescriptor};
+pub use kernel::{Invocations, Kernel, KernelDescriptor};
 pub use readback::{read_buffer, read_texture};
 pub use target::{Layers, Target, begin, texture_of};
 pub use timer::PassTimer;

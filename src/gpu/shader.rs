@@ -15,6 +15,11 @@ macro_rules! sources {
 
 sources! {
     "bssrdf" => "shared/bssrdf.wgsl",
+    "gather" => "gather.wgsl",
+    "maps" => "shared/maps.wgsl",
+    "sampling_uniform" => "shared/sampling_uniform.wgsl",
+    "scattered_texels" => "scattered_texels.wgsl",
+    "scattering_texels" => "scattering_texels.wgsl",
     "combine" => "combine.wgsl",
     "estimator" => "shared/estimator.wgsl",
     "frame" => "shared/frame.wgsl",

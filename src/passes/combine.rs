@@ -8,7 +8,7 @@ use super::light_gbuffer::LightViews;
 use super::scattered_radiosity::ScatteredRadiosity;
 use super::surface_points::SurfacePoints;
 use crate::components::DirectionalLight;
-use crate::gpu::{
+use crate::gpu::{Invocations, 
     Gpu, GpuError, Kernel, KernelDescriptor, PassTimer, binding, storage, storage_of, uniform_buffer,
 };
 use crate::render::Failure;
@@ -128,7 +128,7 @@ fn draw(
         radiosity.as_entire_binding(),
     ];
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    kernel.run(gpu, &mut encoder, &resources, points, timing);
+    kernel.run(gpu, &mut encoder, &resources, Invocations::Count(points), timing);
     gpu.queue.submit([encoder.finish()]);
     report.ran("combine", &[("points", u64::from(points))]);
     Ok(())

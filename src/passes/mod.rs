@@ -8,6 +8,7 @@ pub mod light_gbuffer;
 pub mod medium;
 pub mod raycast;
 pub mod scattered_radiosity;
+pub mod scattering_gbuffer;
 pub mod surface;
 pub mod surface_points;
 pub mod tonemap;
@@ -24,15 +25,18 @@ impl Plugin for ScatteringPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<gbuffer::Gbuffer>()
             .init_resource::<light_gbuffer::LightViewVersion>()
+            .init_resource::<scattering_gbuffer::TexelChooser>()
             .init_resource::<scattered_radiosity::Scatterer>()
+            .init_resource::<scattered_radiosity::Refinement>()
             .init_resource::<combine::Combiner>();
         let there_is_a_gpu = resource_exists::<Gpu>;
         app.add_systems(
             Update,
             (
-                (body::measure, surface_points::refine, light_gbuffer::run)
+                (body::measure, surface_points::refine, light_gbuffer::run).chain().in_set(Stage::LightGbuffer),
+                (scattering_gbuffer::spawn_cameras, scattering_gbuffer::run)
                     .chain()
-                    .in_set(Stage::LightGbuffer),
+                    .in_set(Stage::ScatteringGbuffer),
                 scattered_radiosity::run.in_set(Stage::ScatteredRadiosity),
                 combine::run.in_set(Stage::Combine),
             )

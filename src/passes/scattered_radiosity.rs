@@ -1,31 +1,36 @@
 //! The light that leaves each point of a translucent mesh, of each light.
 //!
-//! Reads the points ([`SurfacePoints`]), the [`LightViews`] and the medium; writes [`ScatteredRadiosity`], one vec4f a point and light.
-//! Reruns for the lights whose view changed, and for all lights where the medium, the points or the settings of the maps changed; as
-//! long as nothing does, further sets of samples can be averaged in.
+//! Reads the points ([`SurfacePoints`]), the [`LightViews`], the medium and, where maps are asked for, the [`CameraMaps`]; writes
+//! [`ScatteredRadiosity`], one vec4f a point and light. Reruns for the lights whose view changed, and for all lights where the medium,
+//! the points or the maps changed; while nothing does, further sets of samples are averaged in as [`Refinement`] says.
+
+mod job;
+mod kernels;
 
 use super::body::Body;
-use super::gbuffer::OrthographicView;
-use super::light_gbuffer::{LightView, LightViews};
+use super::gbuffer::Gbuffer;
+use super::light_gbuffer::LightViews;
 use super::medium::MediumUniform;
+use super::scattering_gbuffer::{self, CameraMaps, TexelChooser};
 use super::surface_points::SurfacePoints;
 use super::upload::MeshBuffers;
-use crate::components::{DipoleModel, ScatteringMaps, Subsurface};
-use crate::gpu::{Gpu, GpuError, Kernel, KernelDescriptor, PassTimer, binding, storage, uniform_buffer};
+use crate::components::{ScatteringMaps, Subsurface};
+use crate::gpu::{Gpu, GpuError, PassTimer, storage};
+use crate::loading::LoadedMesh;
 use crate::render::Failure;
-use crate::view::normal_matrix;
-use crate::{mirrors::mirror, report::Report};
+use crate::report::Report;
 use bevy_ecs::prelude::*;
-use glam::{DMat4, Mat4, Vec2, Vec3};
-use std::collections::HashMap;
+use job::Job;
+pub(crate) use job::{EstimatorUniform, GatheringUniform};
+pub(crate) use kernels::{Scatterer, listing_module, sampling_module};
 
 /// What leaves each point, by light.
 #[derive(Component, Debug)]
 pub(crate) struct ScatteredRadiosity {
     /// One vec4f a point, one layer of them after the other.
     pub layers: wgpu::Buffer,
-    /// What each layer was made from.
-    made: Vec<Recipe>,
+    /// What each layer was made from, and of how many sets of samples it is the mean.
+    made: Vec<(Recipe, u32)>,
     medium: (Subsurface, f64, MediumUniform),
     /// Counts up whenever the layers change.
     pub version: u64,
@@ -37,35 +42,24 @@ struct Recipe {
     view: u64,
     points: MeshBuffers,
     maps: ScatteringMaps,
+    cameras: Option<scattering_gbuffer::Recipe>,
     medium: MediumUniform,
 }
 
-mirror! {
-    /// Mirror of `Estimator` in `shaders/shared/estimator.wgsl`.
-    "scattered_radiosity":
-    pub(crate) struct EstimatorUniform as "Estimator" {
-        light_from_mesh: Mat4,
-        light_from_mesh_normal: Mat4,
-        low: Vec2,
-        inverse_texel: Vec2,
-        samples: u32,
-        pass_index: u32,
-        candidates: u32,
-        points: u32,
-        first: u32,
-        core: f32,
-        least_mu: f32,
-        radius: f32,
-        irradiance: Vec3,
-    }
+/// How far the light that leaves translucent meshes is refined while nothing changes: each further set of samples, with cameras elsewhere,
+/// is averaged with those before. Meshes with `progressive: false` have one set.
+#[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Refinement {
+    /// Sets of samples that are wanted.
+    pub sets: u32,
+    /// Sets that an update may add.
+    pub per_update: u32,
 }
 
-/// What the pass keeps between frames.
-#[derive(Resource, Default, Debug)]
-pub(crate) struct Scatterer {
-    /// Kernels by whether they are for the standard dipole.
-    kernels: HashMap<bool, Kernel>,
-    version: u64,
+impl Default for Refinement {
+    fn default() -> Self {
+        Self { sets: 1, per_update: 1 }
+    }
 }
 
 type Bodies<'w, 's> = Query<
@@ -76,18 +70,19 @@ type Bodies<'w, 's> = Query<
         &'static Body,
         &'static Subsurface,
         &'static ScatteringMaps,
-        &'static SurfacePoints,
+        (&'static SurfacePoints, &'static LoadedMesh),
         &'static LightViews,
+        Option<&'static CameraMaps>,
         Option<&'static mut ScatteredRadiosity>,
     ),
 >;
 
 pub(crate) fn run(
     mut commands: Commands,
-    gpu: Res<Gpu>,
+    (gpu, refinement): (Res<Gpu>, Res<Refinement>),
     mut bodies: Bodies,
     former: Query<Entity, (With<ScatteredRadiosity>, Without<Body>)>,
-    mut scatterer: ResMut<Scatterer>,
+    mut tools: (ResMut<Scatterer>, ResMut<Gbuffer>, ResMut<TexelChooser>),
     mut timer: Option<ResMut<PassTimer>>,
     (mut report, mut failure): (ResMut<Report>, ResMut<Failure>),
 ) {
@@ -95,51 +90,22 @@ pub(crate) fn run(
         commands.entity(entity).remove::<ScatteredRadiosity>();
     }
     let mut held = 0;
-    for (entity, body, subsurface, maps, points, views, radiosity) in &mut bodies {
-        let before = radiosity.as_ref().map(|radiosity| &radiosity.medium);
-        let same = before.filter(|(known, length, _)| known == subsurface && *length == body.millimetres);
-        let Some(medium) =
-            same.map(|known| known.2.clone()).or_else(|| MediumUniform::new(subsurface, body.millimetres))
-        else {
-            continue;
-        };
-        let job = Job { gpu: &gpu, body, maps, points, medium: &medium, model: subsurface.model };
+    for (entity, body, subsurface, maps, (points, mesh), views, cameras, mut radiosity) in &mut bodies {
         let size = 16 * u64::from(points.count) * views.0.len().max(1) as u64;
         held += size;
         let mut new = None;
-        let mut radiosity = radiosity;
         let kept = match radiosity.as_deref_mut() {
             Some(kept) if kept.layers.size() == size => kept,
-            _ => new.insert(ScatteredRadiosity {
-                layers: storage(&gpu, "scattered_radiosity", size),
-                made: Vec::new(),
-                medium: (subsurface.clone(), body.millimetres, medium.clone()),
-                version: 0,
-            }),
+            _ => match ScatteredRadiosity::new(&gpu, size, subsurface, body) {
+                Some(radiosity) => new.insert(radiosity),
+                None => continue,
+            },
         };
-        kept.medium = (subsurface.clone(), body.millimetres, medium.clone());
-        kept.made.truncate(views.0.len());
-        for (layer, view) in views.0.iter().enumerate() {
-            let recipe = Recipe {
-                view: view.version,
-                points: points.mesh.clone(),
-                maps: maps.clone(),
-                medium: medium.clone(),
-            };
-            if kept.made.get(layer) == Some(&recipe) {
-                continue;
-            }
-            let timing = timer.as_mut().and_then(|timer| timer.time_compute("scattered_radiosity"));
-            match job.run(&mut scatterer, view, layer, &kept.layers, timing, &mut report) {
-                Ok(()) => {
-                    kept.made.truncate(layer);
-                    kept.made.push(recipe);
-                    scatterer.version += 1;
-                    kept.version = scatterer.version;
-                }
-                Err(error) => failure.keep(Err(error)),
-            }
-        }
+        kept.keep_medium(subsurface, body);
+        let medium = kept.medium.2.clone();
+        let job = Job { gpu: &gpu, body, maps, points, mesh, medium: &medium, model: subsurface.model };
+        let result = kept.refine(&job, views, cameras, *refinement, &mut tools, timer.as_deref_mut(), &mut report);
+        failure.keep(result);
         if let Some(new) = new {
             commands.entity(entity).insert(new);
         }
@@ -147,93 +113,76 @@ pub(crate) fn run(
     report.hold("scattered_radiosity", held);
 }
 
-/// One mesh's part of the pass.
-struct Job<'a> {
-    gpu: &'a Gpu,
-    body: &'a Body,
-    maps: &'a ScatteringMaps,
-    points: &'a SurfacePoints,
-    medium: &'a MediumUniform,
-    model: DipoleModel,
-}
+impl ScatteredRadiosity {
+    fn new(gpu: &Gpu, size: u64, subsurface: &Subsurface, body: &Body) -> Option<Self> {
+        let medium = MediumUniform::new(subsurface, body.millimetres)?;
+        let medium = (subsurface.clone(), body.millimetres, medium);
+        Some(Self { layers: storage(gpu, "scattered_radiosity", size), made: Vec::new(), medium, version: 0 })
+    }
 
-impl Job<'_> {
-    fn run(
-        &self,
-        scatterer: &mut Scatterer,
-        view: &LightView,
-        layer: usize,
-        layers: &wgpu::Buffer,
-        timing: Option<wgpu::ComputePassTimestampWrites>,
+    /// Derives the medium anew if what it is made of has changed.
+    fn keep_medium(&mut self, subsurface: &Subsurface, body: &Body) {
+        let (known, millimetres, _) = &self.medium;
+        let same = known.material == subsurface.material && known.model == subsurface.model;
+        if same && *millimetres == body.millimetres {
+            return;
+        }
+        if let Some(medium) = MediumUniform::new(subsurface, body.millimetres) {
+            self.medium = (subsurface.clone(), body.millimetres, medium);
+        }
+    }
+
+    /// Brings every layer up to date, and adds sets of samples where more are wanted.
+    #[expect(clippy::too_many_arguments, reason = "what the pass reads and writes")]
+    fn refine(
+        &mut self,
+        job: &Job,
+        views: &LightViews,
+        cameras: Option<&CameraMaps>,
+        refinement: Refinement,
+        tools: &mut (ResMut<Scatterer>, ResMut<Gbuffer>, ResMut<TexelChooser>),
+        mut timer: Option<&mut PassTimer>,
         report: &mut Report,
     ) -> Result<(), GpuError> {
-        let standard = self.model == DipoleModel::StandardDipole;
-        if !scatterer.kernels.contains_key(&standard) {
-            scatterer.kernels.insert(standard, make(self.gpu, standard)?);
-            report.pipelines.push("scattered_radiosity");
+        self.made.truncate(views.0.len());
+        let wanted = if job.maps.progressive { refinement.sets.max(1) } else { 1 };
+        let recipe = |layer: usize| Recipe {
+            view: views.0[layer].version,
+            points: job.points.mesh.clone(),
+            maps: job.maps.clone(),
+            cameras: cameras.map(|maps| maps.recipe.clone()),
+            medium: job.medium.clone(),
+        };
+        for _ in 0..refinement.per_update.max(1) {
+            // Layers start again together with what they are made from, so they can be at different sets.
+            let sets: Vec<u32> = (0..views.0.len())
+                .map(|layer| self.made.get(layer).filter(|made| made.0 == recipe(layer)).map_or(0, |made| made.1))
+                .collect();
+            let Some(set) = sets.iter().copied().min().filter(|set| *set < wanted) else { break };
+            let turned = match cameras {
+                Some(maps) if set > 0 => Some(scattering_gbuffer::build(
+                    job.gpu,
+                    &mut tools.1,
+                    &mut tools.2,
+                    job.mesh,
+                    maps.recipe.clone(),
+                    set,
+                    timer.as_deref_mut(),
+                    report,
+                )?),
+                _ => None,
+            };
+            let maps = turned.as_ref().or(cameras);
+            for (layer, view) in views.0.iter().enumerate().filter(|(layer, _)| sets[*layer] == set) {
+                job.run(&mut tools.0, view, maps, (layer, set), &self.layers, timer.as_deref_mut(), report)?;
+                let made = (recipe(layer), set + 1);
+                match self.made.get_mut(layer) {
+                    Some(place) => *place = made,
+                    None => self.made.push(made),
+                }
+                self.version = tools.0.next_version();
+            }
         }
-        let Some(kernel) = scatterer.kernels.get(&standard) else { return Ok(()) };
-        let medium = uniform_buffer(self.gpu, "medium", self.medium);
-        let estimator = uniform_buffer(self.gpu, "estimator", &self.estimator(&view.view, layer));
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        let resources = [
-            medium.as_entire_binding(),
-            estimator.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&view.target.view),
-            self.points.mesh.vertices.as_entire_binding(),
-            layers.as_entire_binding(),
-        ];
-        kernel.run(self.gpu, &mut encoder, &resources, self.points.count, timing);
-        self.gpu.queue.submit([encoder.finish()]);
-        report.ran("scattered_radiosity", &[("points", u64::from(self.points.count))]);
         Ok(())
     }
-
-    fn estimator(&self, view: &OrthographicView, layer: usize) -> EstimatorUniform {
-        let light_from_mesh = view.view_from_body * self.body.body_from_mesh;
-        let largest = self.medium.sigma_t_prime.max_element();
-        let least_mu = (self.medium.mu * self.medium.sigma_t_prime).min_element();
-        EstimatorUniform {
-            light_from_mesh: DMat4::from(light_from_mesh).as_mat4(),
-            light_from_mesh_normal: normal_matrix(light_from_mesh).as_mat4(),
-            low: view.low.truncate().as_vec2(),
-            inverse_texel: Vec2::splat(view.texels_per_length() as f32),
-            samples: self.maps.samples,
-            pass_index: 0,
-            candidates: self.maps.samples,
-            points: self.points.count,
-            first: layer as u32 * self.points.count,
-            core: (CORE / largest).clamp(1e-9, 1.0),
-            least_mu,
-            // No two points of a body are further apart.
-            radius: 2.0,
-            irradiance: Vec3::ONE,
-        }
-    }
-}
-
-/// The radius over which a dipole is nearly constant, in mean free paths.
-const CORE: f32 = 0.1;
-
-fn make(gpu: &Gpu, standard: bool) -> Result<Kernel, GpuError> {
-    Kernel::new(
-        gpu,
-        &KernelDescriptor {
-            name: "scattered_radiosity",
-            generated: &[sampling_module(standard)],
-            entry_point: "at_vertices",
-            bindings: &[
-                binding::UNIFORM,
-                binding::UNIFORM,
-                binding::TEXTURE,
-                binding::STORAGE,
-                binding::STORAGE_OUT,
-            ],
-        },
-    )
-}
-
-/// The WGSL module `sampling`: how discs are sampled, and which dipole is evaluated.
-pub(crate) fn sampling_module(standard: bool) -> (&'static str, String) {
-    ("sampling", format!("#import sampling_adaptive\nconst STANDARD_DIPOLE = {standard};\n"))
 }

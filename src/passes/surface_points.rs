@@ -74,6 +74,11 @@ pub(crate) fn refine(
 }
 
 impl SurfacePoints {
+    /// The longest edge that there may be, in body space.
+    pub fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
     fn bytes(&self) -> u64 {
         if self.mesh == self.source { 0 } else { self.mesh.bytes() }
     }
