@@ -27,8 +27,14 @@ pub(crate) struct SurfacePoints {
 /// The most points of one mesh.
 const MOST_POINTS: usize = 1 << 20;
 
+/// The most points that a mesh of so many vertices gets on an adapter that is a program, where every triangle costs as much as a dozen
+/// pixels: so many that a frame costs at most half as much again as one of the mesh lit locally.
+fn most_points_in_software(vertices: usize) -> usize {
+    vertices + vertices / 10 + 8_000
+}
+
 /// Edges are at most this many pixels long.
-const PIXELS: f64 = 2.5;
+const PIXELS: f64 = 4.0;
 
 /// Edges are at least, and at most, this share of the body's radius.
 const SHARES: (f64, f64) = (1.0 / 1024.0, 1.0 / 16.0);
@@ -61,7 +67,8 @@ pub(crate) fn refine(
             continue;
         }
         let Some(data) = &mesh.data else { continue };
-        let (refined, _) = data.refined(body.body_from_mesh.matrix3, spacing, MOST_POINTS);
+        let most = if gpu.is_software() { most_points_in_software(data.positions.len()) } else { MOST_POINTS };
+        let (refined, _) = data.refined(body.body_from_mesh.matrix3, spacing, most);
         let is_same = refined.positions.len() == data.positions.len();
         let mesh = if is_same { buffers.clone() } else { MeshBuffers::new(&gpu, &refined) };
         let points =

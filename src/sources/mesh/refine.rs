@@ -7,6 +7,9 @@ use std::collections::HashMap;
 /// Vertices per area of a triangulation with edges about as long as 1: halving edges leaves them between a half and 1.
 const VERTICES_PER_SQUARE: f64 = 2.5;
 
+/// Lengths that are tried, each a quarter longer than the one before.
+const MOST_TRIALS: usize = 24;
+
 /// Halvings of an edge, at most: more than 32 bits can tell apart.
 const MOST_ROUNDS: usize = 24;
 
@@ -18,14 +21,30 @@ impl MeshData {
     /// length that was kept to.
     pub fn refined(&self, scale: DMat3, longest: f64, most_vertices: usize) -> (Self, f64) {
         let area: f64 = self.triangles.iter().map(|triangle| self.area(scale, triangle)).sum();
-        let kept = longest.max((area * VERTICES_PER_SQUARE / most_vertices.max(1) as f64).sqrt());
+        let mut kept = longest.max((area * VERTICES_PER_SQUARE / most_vertices.max(1) as f64).sqrt());
+        // How many vertices a length takes depends on how even the triangles are, so it is tried.
+        for _ in 0..MOST_TRIALS {
+            if let Some(mesh) = self.refined_to(scale, kept, most_vertices) {
+                return (mesh, kept);
+            }
+            kept *= 1.25;
+        }
+        (Self { notes: Vec::new(), ..self.clone() }, f64::INFINITY)
+    }
+
+    /// The same surface with no edge longer than `longest`; `None` if that takes too many vertices.
+    fn refined_to(&self, scale: DMat3, longest: f64, most_vertices: usize) -> Option<Self> {
         let mut mesh = Self { notes: Vec::new(), ..self.clone() };
         for _ in 0..MOST_ROUNDS {
-            if !mesh.halve_edges(scale, kept) || mesh.positions.len() > 2 * most_vertices {
+            let is_done = !mesh.halve_edges(scale, longest);
+            if mesh.positions.len() > most_vertices.max(self.positions.len()) {
+                return None;
+            }
+            if is_done {
                 break;
             }
         }
-        (mesh, kept)
+        Some(mesh)
     }
 
     /// Halves every edge longer than `longest` once. Answers whether there was any.
