@@ -84,4 +84,5 @@ pub mod scene;
 pub mod sources;
 mod view;
 pub use app::{SceneTime, Stage, TyndallPlugins};
+pub use passes::scattered_radiosity::Refinement;
 pub use view::Picture;

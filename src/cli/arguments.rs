@@ -45,6 +45,9 @@ pub(super) struct RenderArguments {
     /// Frames a second of the animation
     #[arg(long, default_value_t = 25.0, value_parser = rate)]
     pub fps: f64,
+    /// Average so many sets of samples in the light that leaves translucent meshes: less noise, in proportion more time
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    pub passes: u32,
     /// Replace a value of the scene
     #[arg(long = "set", value_name = "ENTITY.COMPONENT.FIELD=VALUE")]
     pub overrides: Vec<Override>,

@@ -8,7 +8,7 @@ use crate::gpu::{Gpu, GpuOptions};
 use crate::render::{self, RenderError};
 use crate::report::Report;
 use crate::scene::{Problem, SceneDocument, Severity, nearest};
-use crate::{Picture, SceneTime};
+use crate::{Picture, Refinement, SceneTime};
 use bevy_app::App;
 use bevy_ecs::prelude::*;
 use std::path::{Path, PathBuf};
@@ -39,6 +39,7 @@ pub(super) fn run(app: &mut App, arguments: &RenderArguments, started: Instant) 
         camera: arguments.camera.clone(),
         encoded: !output::wants_radiance(&arguments.output),
     });
+    app.insert_resource(Refinement { sets: arguments.passes, per_update: arguments.passes });
     let mut report = app.world_mut().resource_mut::<Report>();
     report.spent("wait for the driver", waiting);
     report.measure = arguments.stats.is_some();
