@@ -21,6 +21,7 @@ sources! {
     "fresnel" => "shared/fresnel.wgsl",
     "fullscreen" => "shared/fullscreen.wgsl",
     "light_gbuffer" => "light_gbuffer.wgsl",
+    "phase" => "shared/phase.wgsl",
     "raycast" => "raycast.wgsl",
     "sampling_adaptive" => "shared/sampling_adaptive.wgsl",
     "scattered_radiosity" => "scattered_radiosity.wgsl",
