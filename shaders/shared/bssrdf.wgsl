@@ -74,8 +74,8 @@ fn directional_dipole(medium: Medium, between: vec3f, n_i: vec3f, omega_12: vec3
     let i_v = 1.0 / d_v;
     let i_rv = i_r * i_v;
 
-    // f_1 = e^(-mu d)/d, f_3 = (1 + mu d) e^(-mu d)/d^3, f_5 = (3 (1 + mu d) + (mu d)^2) e^(-mu d)/d^5, and their differences. Each part is multiplied with
-    // e^(-mu d_r) before it can grow: e^(-mu d_v) may be greater by far.
+    // f_1 = e^(-mu d)/d, f_3 = (1 + mu d) e^(-mu d)/d^3, f_5 = (3 (1 + mu d) + (mu d)^2) e^(-mu d)/d^5, and their differences. Each part is
+    // multiplied with e^(-mu d_r) before it can grow: e^(-mu d_v) may be greater by far.
     let m_r = mu * d_r;
     let decay = exp(-m_r);
     let e = decay * expm1(-mu * delta);
@@ -125,6 +125,6 @@ fn subsurface(medium: Medium, between: vec3f, n_i: vec3f, to_light: vec3f, n_o: 
         let omega_12 = refract_into(to_light, n_i, cosine, medium.eta);
         s_d = directional_dipole(medium, between, n_i, omega_12, n_o);
     }
-    let calibration = max(medium.calibration_0 + cosine * (medium.calibration_1 + cosine * medium.calibration_2), vec3f(0.0));
-    return select(vec3f(0.0), enters * calibration * max(s_d, vec3f(0.0)), enters > 0.0);
+    let calibration = medium.calibration_0 + cosine * (medium.calibration_1 + cosine * medium.calibration_2);
+    return select(vec3f(0.0), enters * max(calibration, vec3f(0.0)) * max(s_d, vec3f(0.0)), enters > 0.0);
 }

@@ -1,4 +1,6 @@
 use super::*;
+use crate::optics::dipole::{DirectionalDipole, Entry, Exit};
+use crate::optics::fresnel::refract;
 use std::time::Instant;
 
 /// Numbers that look random, the same on every machine (SplitMix64).
@@ -34,8 +36,13 @@ impl Random {
         DVec3::new(across * cosine, across * sine, z)
     }
 
+    /// Per mm: what a scene may sensibly ask for, and now and then the ends of what a file may hold.
     fn sigma(&mut self) -> f64 {
-        if self.unit() < 0.1 { 0.0 } else { self.decades(-6.0, 6.0) }
+        match self.unit() {
+            x if x < 0.1 => 0.0,
+            x if x < 0.15 => self.decades(-30.0, 12.0),
+            _ => self.decades(-6.0, 6.0),
+        }
     }
 
     fn g(&mut self) -> f64 {
@@ -144,7 +151,7 @@ fn sweep(model: DipoleModel, media: usize, geometries: usize) {
         let special = f64::from(uniform.virtual_distance.x) / f64::from(uniform.sigma_t_prime.x);
         cases.extend((0..geometries).map(|_| random.geometry(index, special)));
         uniforms.push(uniform);
-        meant.push((channels, millimetres));
+        meant.push((channels, millimetres, Boundary::exact(channels[0].eta)));
     }
     println!("{model:?}: {} combinations, a medium within {:.1} ms", cases.len(), longest * 1e3);
     let standard = model == DipoleModel::StandardDipole;
@@ -155,28 +162,87 @@ fn sweep(model: DipoleModel, media: usize, geometries: usize) {
     for (case, found) in cases.iter().zip(evaluate(standard, VALUES, &uniforms, &cases)) {
         let value = found.truncate();
         assert!(value.is_finite() && value.min_element() >= 0.0, "{value}: {}", describe(case));
+        assert!(
+            case.n_i.dot(case.to_light) > -1e-6 || value == Vec3::ZERO,
+            "{value} from below: {}",
+            describe(case)
+        );
         for channel in 0..3 {
             bright[channel] += usize::from(value[channel] > 0.0);
         }
     }
     println!("{bright:?} are above 0");
-    if !standard {
-        for (case, found) in cases.iter().zip(evaluate(false, UNCUT, &uniforms, &cases)) {
-            assert!(found.w == 0.0 || found.is_finite(), "{found} before the cut: {}", describe(case));
+    assert!(
+        bright.iter().all(|bright| *bright > cases.len() / 10),
+        "{bright:?} of {} are above 0",
+        cases.len()
+    );
+    if standard {
+        return;
+    }
+    let mut errors = Vec::new();
+    for (case, found) in cases.iter().zip(evaluate(false, UNCUT, &uniforms, &cases)) {
+        assert!(found.w == 0.0 || found.is_finite(), "{found} before the cut: {}", describe(case));
+        let (channels, millimetres, boundary) = &meant[case.medium as usize];
+        if found.w > 0.0 {
+            errors.extend((0..3).filter_map(|c| {
+                Some((off(&channels[c], *boundary, *millimetres, case, found[c])?, case, c))
+            }));
         }
     }
+    errors.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let at = |share: f64| errors[((errors.len() - 1) as f64 * share) as usize].0;
+    println!(
+        "of {} values: median {:.1e}, 99 % {:.1e}, 99.9 % {:.1e}, all {:.1e}",
+        errors.len(),
+        at(0.5),
+        at(0.99),
+        at(0.999),
+        at(1.0)
+    );
+    for (error, case, c) in errors.iter().rev().take(1) {
+        println!("{error:.1e} channel {c}: {}", describe(case));
+    }
+    assert!(at(0.99) < 3e-5 && at(1.0) < 2e-2, "values are off");
+}
+
+/// How far a value of `S_d` is from what 64 bits say, relative to the greater of its two terms. Nothing where 32 bits cannot be asked to
+/// agree: on the edges at which the model itself jumps, and where next to nothing is left.
+fn off(medium: &Medium, boundary: Boundary, millimetres: f64, case: &Case, found: f32) -> Option<f64> {
+    let per_unit =
+        Medium { sigma_a: medium.sigma_a * millimetres, sigma_s: medium.sigma_s * millimetres, ..*medium };
+    let diffusion = per_unit.diffusion();
+    let scale = diffusion.sigma_t_prime;
+    if medium.sigma_s == 0.0 || !(1e-12..1e13).contains(&scale) {
+        return None;
+    }
+    let dipole = DirectionalDipole { diffusion, boundary, least_distance: LEAST_DISTANCE / scale };
+    let [between, normal, to_light, n_o] =
+        [case.between, case.n_i, case.to_light, case.n_o].map(|vector| vector.as_dvec3());
+    let normal = normal.normalize();
+    let direction = refract(to_light.normalize(), normal, medium.eta)?;
+    let entry = Entry { position: DVec3::ZERO, normal, direction };
+    let exit = Exit { position: between, normal: n_o.normalize() };
+    let terms = dipole.terms(&entry, &exit);
+    let sine = normal.cross(between.normalize_or_zero()).length();
+    let is_point = (1e-45..1e-15).contains(&between.length());
+    let jumps = is_point || terms.mu0.abs() < 1e-5 || between != DVec3::ZERO && (1e-9..1e-4).contains(&sine);
+    let faded = dipole.diffusion.mu * terms.d_r > 60.0 || terms.d_v * scale < 0.5;
+    let whole = terms.s_real.abs().max(terms.s_virtual.abs());
+    let value = dipole.s_d(&entry, &exit);
+    (!jumps && !faded && whole > 1e-25 * scale * scale).then(|| (f64::from(found) - value).abs() / whole)
 }
 
 #[test]
 #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_directional_dipole_is_finite_whatever_it_is_given() {
-    sweep(DipoleModel::DirectionalDipole, 10_240, 4);
+    sweep(DipoleModel::DirectionalDipole, 5_120, 8);
 }
 
 #[test]
 #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_standard_dipole_is_finite_whatever_it_is_given() {
-    sweep(DipoleModel::StandardDipole, 10_240, 4);
+    sweep(DipoleModel::StandardDipole, 5_120, 8);
 }
 
 #[test]
