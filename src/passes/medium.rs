@@ -34,8 +34,8 @@ mirror! {
 /// meets one that faces away from it (mu_0 = 0); on a plane this changes nothing up to 75 degrees of incidence.
 const LEAST_DISTANCE: f64 = 1.0 / 12.0;
 
-/// Mean free paths in the unit of a body that 32 bits can follow to the fifth power of any length. A body of fewer shows nothing, and one
-/// of more nothing but its surface.
+/// The fewest and the most mean free paths to a body's unit of length of which 32 bits hold the square and all that it is multiplied with.
+/// With fewer a body shows nothing, and with more light leaves where it entered.
 const SCALES: (f64, f64) = (1e-30, 1e15);
 
 impl MediumUniform {
@@ -114,7 +114,11 @@ impl MediumUniform {
 /// The medium, or in place of a vacuum one of hardly any absorption: a vacuum has no length to measure others by.
 fn lengthened(medium: &Medium) -> Medium {
     Medium {
-        sigma_a: if medium.sigma_s > 0.0 { medium.sigma_a } else { medium.sigma_a.max(1e-30) },
+        sigma_a: if medium.sigma_s * (1.0 - medium.g) > 0.0 {
+            medium.sigma_a
+        } else {
+            medium.sigma_a.max(1e-30)
+        },
         ..*medium
     }
 }

@@ -187,6 +187,9 @@ fn coefficients_that_mean_nothing_make_no_medium() {
     assert!(
         of(0.0, 0.0, 0.0, 1.3).is_some_and(|medium| medium.strength == Vec3::ZERO && medium.d_e.is_finite())
     );
+    assert!(
+        of(0.0, 1.0, 1.0, 1.3).is_some_and(|medium| medium.strength == Vec3::ZERO && medium.d_e.is_finite())
+    );
     for (sigma_a, sigma_s, g, eta) in [
         (f32::NAN, 1.0, 0.0, 1.3),
         (0.1, f32::INFINITY, 0.0, 1.3),
