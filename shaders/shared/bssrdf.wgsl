@@ -44,9 +44,9 @@ fn directional_dipole(medium: Medium, between: vec3f, n_i: vec3f, omega_12: vec3
     const D = 1.0 / 3.0;
     let scale = medium.sigma_t_prime;
     let mu = medium.mu;
-    // The modified normal, perpendicular to what lies between.
+    // The modified normal, perpendicular to what lies between. Squares of shorter lengths leave 32 bits.
     let length_between = length(between);
-    let along = between / max(length_between, 1e-30);
+    let along = select(between / max(length_between, 1e-15), vec3f(0.0), length_between < 1e-15);
     let sideways = cross(n_i, along);
     let is_parallel = length(sideways) < 1e-6;
     let n_star = select(cross(along, sideways) / max(length(sideways), 1e-6), n_i, is_parallel);
@@ -66,26 +66,31 @@ fn directional_dipole(medium: Medium, between: vec3f, n_i: vec3f, omega_12: vec3
     let in_front = D * mu_0 * (D * mu_0 + 2.0 * medium.d_e * across * inverseSqrt(r * r + medium.d_e * medium.d_e));
     let extension = max(select(medium.behind, in_front, mu_0 > 0.0), vec3f(medium.least_distance) - r * r);
     let d_r = sqrt(r * r + extension);
-    let further = h * (h - 2.0 * x_star) - extension;
-    let d_v = sqrt(max(r * r + extension + further, vec3f(1e-30)));
+    // Where all is in one line, the exit may lie at the virtual source.
+    let further = max(h * (h - 2.0 * x_star), max(medium.least_distance, 1e-12) - r * r) - extension;
+    let d_v = sqrt(r * r + extension + further);
     let delta = further / (d_v + d_r);
     let i_r = 1.0 / d_r;
     let i_v = 1.0 / d_v;
     let i_rv = i_r * i_v;
 
-    // f_1 = e^(-mu d)/d, f_3 = (1 + mu d) e^(-mu d)/d^3, f_5 = (3 (1 + mu d) + (mu d)^2) e^(-mu d)/d^5, and their differences over e^(-mu d_r).
-    let e = expm1(-mu * delta);
+    // f_1 = e^(-mu d)/d, f_3 = (1 + mu d) e^(-mu d)/d^3, f_5 = (3 (1 + mu d) + (mu d)^2) e^(-mu d)/d^5, and their differences. Each part is
+    // multiplied with e^(-mu d_r) before it can grow: e^(-mu d_v) may be greater by far.
     let m_r = mu * d_r;
+    let decay = exp(-m_r);
+    let e = decay * expm1(-mu * delta);
+    let lag = decay * delta;
+    let gap = decay * mu * further;
     let m_v = mu * d_v;
     let squares = i_r * i_r + i_rv + i_v * i_v;
-    let f_1 = i_v * (delta * i_r - e);
-    let f_3 = delta * i_rv * squares + mu * further * i_rv * i_rv - e * (1.0 + m_v) * i_v * i_v * i_v;
+    let f_1 = i_v * (lag * i_r - e);
+    let f_3 = lag * i_rv * squares + gap * i_rv * i_rv - e * (1.0 + m_v) * i_v * i_v * i_v;
     let fourths = i_r * i_r * (i_r * i_r + i_rv) + i_rv * i_rv + i_v * i_v * (i_rv + i_v * i_v);
-    let f_5 = 3.0 * delta * i_rv * fourths + 3.0 * mu * further * i_rv * i_rv * (i_r * i_r + i_v * i_v)
-        + mu * mu * delta * i_rv * squares - e * (3.0 * (1.0 + m_v) + m_v * m_v) * i_v * i_v * i_v * i_v * i_v;
+    let f_5 = 3.0 * lag * i_rv * fourths + 3.0 * gap * i_rv * i_rv * (i_r * i_r + i_v * i_v)
+        + mu * mu * lag * i_rv * squares - e * (3.0 * (1.0 + m_v) + m_v * m_v) * i_v * i_v * i_v * i_v * i_v;
     // Of the virtual source alone.
-    let f_3v = (1.0 + e) * (1.0 + m_v) * i_v * i_v * i_v;
-    let f_5v = (1.0 + e) * (3.0 * (1.0 + m_v) + m_v * m_v) * i_v * i_v * i_v * i_v * i_v;
+    let f_3v = (decay + e) * (1.0 + m_v) * i_v * i_v * i_v;
+    let f_5v = (decay + e) * (3.0 * (1.0 + m_v) + m_v * m_v) * i_v * i_v * i_v * i_v * i_v;
 
     let turned = w_s * (h - 2.0 * x_star);
     let g = 3.0 * medium.c_phi * x_w - 3.0 * D * medium.c_e * w_n + medium.c_e * x_n;
@@ -94,7 +99,7 @@ fn directional_dipole(medium: Medium, between: vec3f, n_i: vec3f, omega_12: vec3
     let sum = medium.c_phi / D * f_1 + g * f_3 + g_difference * f_3v
         + 3.0 * D * medium.c_e * (x_w * x_n * f_5 + h_difference * f_5v);
     // Beyond that, 32 bits hold nothing of it.
-    return select(medium.strength * exp(-m_r) * sum, vec3f(0.0), m_r > vec3f(80.0));
+    return select(medium.strength * sum, vec3f(0.0), m_r > vec3f(80.0));
 }
 
 fn standard_dipole(medium: Medium, between: vec3f) -> vec3f {
@@ -121,5 +126,5 @@ fn subsurface(medium: Medium, between: vec3f, n_i: vec3f, to_light: vec3f, n_o: 
         s_d = directional_dipole(medium, between, n_i, omega_12, n_o);
     }
     let calibration = medium.calibration_0 + cosine * (medium.calibration_1 + cosine * medium.calibration_2);
-    return select(vec3f(0.0), enters * calibration * max(s_d, vec3f(0.0)), enters > 0.0);
+    return select(vec3f(0.0), enters * max(calibration, vec3f(0.0)) * max(s_d, vec3f(0.0)), enters > 0.0);
 }

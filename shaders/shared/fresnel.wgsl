@@ -25,6 +25,6 @@ fn fresnel_transmittance(cosine: f32, n: f32) -> f32 {
 // The refracted direction, pointing into the medium. `to_light` and `normal` point away from it; `cosine` is the one between them.
 // Only where there is no total reflection.
 fn refract_into(to_light: vec3f, normal: vec3f, cosine: f32, n: f32) -> vec3f {
-    let root = sqrt(max(n * n - 1.0 + cosine * cosine, 0.0));
+    let root = sqrt(max((n - 1.0) * (n + 1.0) + cosine * cosine, 0.0));
     return (normal * (cosine - root) - to_light) / n;
 }

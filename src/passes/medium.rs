@@ -34,10 +34,22 @@ mirror! {
 /// meets one that faces away from it (mu_0 = 0); on a plane this changes nothing up to 75 degrees of incidence.
 const LEAST_DISTANCE: f64 = 1.0 / 12.0;
 
+/// The fewest and the most mean free paths to a body's unit of length of which 32 bits hold the square and all that it is multiplied with.
+/// With fewer a body shows nothing, and with more light leaves where it entered.
+const SCALES: (f64, f64) = (1e-30, 1e15);
+
 impl MediumUniform {
     /// The medium of a body, of which a unit of length has so many millimetres. `None` where its material has no meaning.
     pub fn new(subsurface: &Subsurface, millimetres: f64) -> Option<Self> {
         let channels = subsurface.material.coefficients()?;
+        let sound = |Coefficients { sigma_a, sigma_s, g, eta }: &Coefficients| {
+            [sigma_a, sigma_s, g, eta].iter().all(|value| value.is_finite())
+                && sigma_a.min(*sigma_s) >= 0.0
+                && *eta > 0.0
+        };
+        if !channels.iter().all(sound) {
+            return None;
+        }
         Some(Self::of(
             &channels.map(|channel| medium(&channel)),
             subsurface.model,
@@ -52,13 +64,25 @@ impl MediumUniform {
             DipoleModel::CalibratedDipole => calibration(&medium),
             DipoleModel::DirectionalDipole | DipoleModel::StandardDipole => Calibration([1.0, 0.0, 0.0]),
         });
-        let diffusion = media.map(|medium| medium.diffusion());
-        let boundary = Boundary::exact(media[0].eta);
+        Self::with(media, &calibrated, Boundary::exact(media[0].eta), model, least_distance, millimetres)
+    }
+
+    /// The same with a boundary and calibrations that are known.
+    fn with(
+        media: &[Medium; 3],
+        calibrated: &[Calibration; 3],
+        boundary: Boundary,
+        model: DipoleModel,
+        least_distance: f64,
+        millimetres: f64,
+    ) -> Self {
+        let diffusion = media.map(|medium| lengthened(&medium).diffusion());
+        let scale = |c: usize| (diffusion[c].sigma_t_prime * millimetres).clamp(SCALES.0, SCALES.1);
         let per_channel = |value: &dyn Fn(usize) -> f64| DVec3::from(std::array::from_fn(value)).as_vec3();
         let standard = model == DipoleModel::StandardDipole;
         let pi = std::f64::consts::PI;
         Self {
-            sigma_t_prime: per_channel(&|c| diffusion[c].sigma_t_prime * millimetres),
+            sigma_t_prime: per_channel(&scale),
             eta: boundary.eta as f32,
             mu: per_channel(&|c| (3.0 * diffusion[c].one_minus_albedo_prime).sqrt()),
             c_phi: boundary.c_phi as f32,
@@ -72,7 +96,7 @@ impl MediumUniform {
             least_distance: (least_distance * least_distance) as f32,
             behind: per_channel(&|c| (diffusion[c].sigma_t_prime / (3.0 * diffusion[c].sigma_t)).powi(2)),
             strength: per_channel(&|c| {
-                let area = (diffusion[c].sigma_t_prime * millimetres).powi(2);
+                let area = scale(c).powi(2);
                 match (diffusion[c].sigma_s_prime > 0.0, standard) {
                     (false, _) => 0.0,
                     // Over 4 C_phi(1/eta), so that what leaves in all directions adds up to R_d.
@@ -87,8 +111,23 @@ impl MediumUniform {
     }
 }
 
+/// The medium, or in place of a vacuum one of hardly any absorption: a vacuum has no length to measure others by.
+fn lengthened(medium: &Medium) -> Medium {
+    Medium {
+        sigma_a: if medium.sigma_s * (1.0 - medium.g) > 0.0 {
+            medium.sigma_a
+        } else {
+            medium.sigma_a.max(1e-30)
+        },
+        ..*medium
+    }
+}
+
 /// The medium of one channel, lengths in millimetres.
 pub(crate) fn medium(coefficients: &Coefficients) -> Medium {
     let Coefficients { sigma_a, sigma_s, g, eta } = *coefficients;
     Medium { sigma_a, sigma_s, g, eta }
 }
+
+#[cfg(test)]
+mod tests;
