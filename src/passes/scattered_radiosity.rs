@@ -23,8 +23,8 @@ use std::collections::HashMap;
 pub(crate) struct ScatteredRadiosity {
     /// One vec4f a point, one layer of them after the other.
     pub layers: wgpu::Buffer,
-    /// What each layer was made from.
-    made: Vec<Recipe>,
+    /// What each layer was made from; none where that failed.
+    made: Vec<Option<Recipe>>,
     medium: (Subsurface, f64, MediumUniform),
     /// Counts up whenever the layers change.
     pub version: u64,
@@ -117,7 +117,7 @@ pub(crate) fn run(
             }),
         };
         kept.medium = (subsurface.clone(), body.millimetres, medium.clone());
-        kept.made.truncate(views.0.len());
+        kept.made.resize(views.0.len(), None);
         for (layer, view) in views.0.iter().enumerate() {
             let recipe = Recipe {
                 view: view.version,
@@ -125,14 +125,14 @@ pub(crate) fn run(
                 maps: maps.clone(),
                 medium: medium.clone(),
             };
-            if kept.made.get(layer) == Some(&recipe) {
+            if kept.made[layer].as_ref() == Some(&recipe) {
                 continue;
             }
+            kept.made[layer] = None;
             let timing = timer.as_mut().and_then(|timer| timer.time_compute("scattered_radiosity"));
             match job.run(&mut scatterer, view, layer, &kept.layers, timing, &mut report) {
                 Ok(()) => {
-                    kept.made.truncate(layer);
-                    kept.made.push(recipe);
+                    kept.made[layer] = Some(recipe);
                     scatterer.version += 1;
                     kept.version = scatterer.version;
                 }
