@@ -12,7 +12,9 @@ use bevy_ecs::prelude::*;
 use glam::{DVec3, UVec2, Vec3};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use tyndall::components::{DirectionalLight, MapResolution, MapStrategy, ScatteringMaps, Shading, Subsurface, Transform};
+use tyndall::components::{
+    DirectionalLight, MapResolution, MapStrategy, ScatteringMaps, Shading, Subsurface, Transform,
+};
 use tyndall::cpu::{ScatteredPoint, brute_force, scattered_points};
 use tyndall::gpu::{Gpu, GpuOptions};
 use tyndall::{LightTexels, Picture, TyndallPlugins, render};
@@ -30,7 +32,12 @@ struct Setting {
 
 fn settings(quick: bool) -> Vec<Setting> {
     let adaptive = ScatteringMaps::default();
-    let uniform = ScatteringMaps { strategy: MapStrategy::Uniform, samples: 48, resolution: MapResolution::Texels(1200, 680), ..adaptive.clone() };
+    let uniform = ScatteringMaps {
+        strategy: MapStrategy::Uniform,
+        samples: 48,
+        resolution: MapResolution::Texels(1200, 680),
+        ..adaptive
+    };
     let mut all = vec![
         Setting { name: "Uniform, as published", maps: uniform.clone() },
         Setting { name: "Adaptive, default", maps: adaptive.clone() },
@@ -39,16 +46,22 @@ fn settings(quick: bool) -> Vec<Setting> {
         return all;
     }
     for cameras in [4, 8] {
-        all.push(Setting { name: "Uniform", maps: ScatteringMaps { cameras, ..uniform.clone() } });
+        all.push(Setting { name: "Uniform", maps: ScatteringMaps { cameras, ..uniform } });
     }
-    all.push(Setting { name: "Uniform", maps: ScatteringMaps { samples: 192, ..uniform.clone() } });
-    all.push(Setting { name: "Uniform", maps: ScatteringMaps { resolution: MapResolution::Texels(300, 170), ..uniform } });
+    all.push(Setting { name: "Uniform", maps: ScatteringMaps { samples: 192, ..uniform } });
+    all.push(Setting {
+        name: "Uniform",
+        maps: ScatteringMaps { resolution: MapResolution::Texels(300, 170), ..uniform },
+    });
     for samples in [24, 48, 96, 256] {
-        all.push(Setting { name: "Adaptive", maps: ScatteringMaps { samples, ..adaptive.clone() } });
+        all.push(Setting { name: "Adaptive", maps: ScatteringMaps { samples, ..adaptive } });
     }
     for (cameras, side) in [(4, 256), (8, 256), (16, 128), (16, 256), (16, 512)] {
         let resolution = MapResolution::Texels(side, side);
-        all.push(Setting { name: "Adaptive in maps", maps: ScatteringMaps { cameras, resolution, ..adaptive.clone() } });
+        all.push(Setting {
+            name: "Adaptive in maps",
+            maps: ScatteringMaps { cameras, resolution, ..adaptive },
+        });
     }
     all
 }
@@ -122,7 +135,8 @@ impl Bench {
         );
         std::fs::write(&scene, text).unwrap();
         let mut app = App::new();
-        app.add_plugins(TyndallPlugins).insert_resource(pollster::block_on(Gpu::new(&GpuOptions::default())).unwrap());
+        app.add_plugins(TyndallPlugins)
+            .insert_resource(pollster::block_on(Gpu::new(&GpuOptions::default())).unwrap());
         app.insert_resource(Picture { size: UVec2::new(1200, 680), ..Default::default() });
         let document = render::load_scene(&mut app, &scene, &[]);
         assert!(!document.has_errors(), "{:#?}", document.problems);
@@ -158,7 +172,8 @@ impl Bench {
         let points = scattered_points(self.app.world(), self.mesh).unwrap();
         let square = |difference: DVec3| difference.length_squared();
         let pairs = probes.iter().zip(truth);
-        let wrong: f64 = pairs.map(|(index, truth)| square(points[*index].radiosity.as_dvec3() - *truth)).sum();
+        let wrong: f64 =
+            pairs.map(|(index, truth)| square(points[*index].radiosity.as_dvec3() - *truth)).sum();
         (wrong / truth.iter().map(|truth| square(*truth)).sum::<f64>()).sqrt()
     }
 

@@ -99,8 +99,9 @@ fn transform_translucent(
 @fragment
 fn shade_translucent(in: TranslucentVaryings) -> @location(0) vec4f {
     let at = seen(Varyings(in.position_in_clip, in.position_in_eye, in.normal_in_eye));
-    // Where the interpolated normal leans away from the eye, the surface is seen edge-on.
-    let leaves = fresnel_transmittance(max(dot(at.normal, at.to_eye), 0.0), mesh.eta);
+    // Where an interpolated normal leans away from the eye, the facet that is seen does not: without a bound, outlines of coarse meshes
+    // would be dotted with black.
+    let leaves = fresnel_transmittance(max(abs(dot(at.normal, at.to_eye)), 0.1), mesh.eta);
     var radiance = leaves * in.radiosity;
     if any(mesh.specular > vec3f(0.0)) {
         radiance += reflected(at, vec3f(0.0));

@@ -8,15 +8,25 @@ use tyndall::mirrors::{self, Mirror};
 /// The generated modules, for two volumes of which the shader interpolates one.
 fn shaders() -> Vec<(&'static str, naga::Module, String)> {
     let generated = mirrors::generated_modules();
-    ["gbuffer", "scattering_texels", "scattered_texels", "gather", "scattered_radiosity", "combine", "surface", "raycast", "tonemap"]
-        .into_iter()
-        .map(|name| {
-            let text = shader::expand(name, &generated).unwrap();
-            let module = naga::front::wgsl::parse_str(&text)
-                .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
-            (name, module, text)
-        })
-        .collect()
+    [
+        "gbuffer",
+        "scattering_texels",
+        "scattered_texels",
+        "gather",
+        "scattered_radiosity",
+        "combine",
+        "surface",
+        "raycast",
+        "tonemap",
+    ]
+    .into_iter()
+    .map(|name| {
+        let text = shader::expand(name, &generated).unwrap();
+        let module = naga::front::wgsl::parse_str(&text)
+            .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
+        (name, module, text)
+    })
+    .collect()
 }
 
 #[test]

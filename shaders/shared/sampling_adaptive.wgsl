@@ -36,7 +36,8 @@ fn disc_of(x_o: vec3f, index: u32) -> Disc {
     let core = estimator.core + 0.05 * depth;
     // Beyond e^-14 there is nothing to see: where mu sqrt(depth^2 + radius^2) exceeds mu depth by 14.
     let fade = 14.0 / max(estimator.least_mu, 1e-20);
-    let narrowing = select(1.0, clamp(above.z, 0.02, 1.0), any(above.xyz != vec3f(0.0)));
+    // No narrower than that: near a terminator the surface bends away within the disc.
+    let narrowing = select(1.0, clamp(above.z, 0.3, 1.0), any(above.xyz != vec3f(0.0)));
     let slant = length(above.xy);
     let steepest = select(vec2f(1.0, 0.0), above.xy / max(slant, 1e-6), slant > 1e-6);
     let radius = min(sqrt(fade) * sqrt(fade + 2.0 * depth), estimator.radius) / narrowing;

@@ -32,7 +32,8 @@ pub struct ScatteredPoint {
 ///
 /// If the GPU fails while they are read back.
 pub fn scattered_points(world: &World, mesh: Entity) -> Result<Vec<ScatteredPoint>, GpuError> {
-    let (Some(points), Some(radiosity)) = (world.get::<SurfacePoints>(mesh), world.get::<Radiosity>(mesh)) else {
+    let (Some(points), Some(radiosity)) = (world.get::<SurfacePoints>(mesh), world.get::<Radiosity>(mesh))
+    else {
         return Ok(Vec::new());
     };
     let gpu = world.get_resource::<Gpu>().ok_or(GpuError::Missing)?;
@@ -64,7 +65,8 @@ pub fn brute_force(world: &World, mesh: Entity, points: &[ScatteredPoint]) -> Re
     let gpu = world.get_resource::<Gpu>().ok_or(GpuError::Missing)?;
     for view in &views.0 {
         let lit = lit_surface(gpu, view)?;
-        let irradiance = world.get::<DirectionalLight>(view.light).map_or(Vec3::ZERO, |light| light.irradiance);
+        let irradiance =
+            world.get::<DirectionalLight>(view.light).map_or(Vec3::ZERO, |light| light.irradiance);
         let light_from_mesh = view.view.view_from_body * body.body_from_mesh;
         let normals = light_from_mesh.matrix3.inverse().transpose();
         let area = view.view.texels_per_length().powi(-2);
@@ -73,7 +75,9 @@ pub fn brute_force(world: &World, mesh: Entity, points: &[ScatteredPoint]) -> Re
                 position: light_from_mesh.transform_point3(point.position.as_dvec3()),
                 normal: (normals * point.normal.as_dvec3()).normalize(),
             };
-            let found = channels.each_ref().map(|channel| lit.iter().map(|entry| channel.carried(entry, &exit)).sum::<f64>());
+            let found = channels
+                .each_ref()
+                .map(|channel| lit.iter().map(|entry| channel.carried(entry, &exit)).sum::<f64>());
             *sum += DVec3::from(found) * area * irradiance.as_dvec3();
         }
     }
@@ -91,13 +95,17 @@ fn lit_surface(gpu: &Gpu, light: &LightView) -> Result<Vec<Lit>, GpuError> {
     let view = &light.view;
     let bytes = read_texture(gpu, &light.target.texture)?;
     let texels = bytes.chunks_exact(16).map(bytemuck::pod_read_unaligned::<[f32; 4]>);
-    let lit = texels.enumerate().filter(|(_, texel)| texel[..3] != [0.0; 3]).map(|(index, [x, y, z, height])| {
-        let (column, row) = (index as u32 % view.size.x, index as u32 / view.size.x);
-        let up = view.size.y - 1 - row;
-        let across = view.low.truncate()
-            + (glam::DVec2::new(f64::from(column), f64::from(up)) + 0.5) / view.texels_per_length();
-        Lit { position: across.extend(f64::from(height)), normal: Vec3::new(x, y, z).as_dvec3().normalize() }
-    });
+    let lit =
+        texels.enumerate().filter(|(_, texel)| texel[..3] != [0.0; 3]).map(|(index, [x, y, z, height])| {
+            let (column, row) = (index as u32 % view.size.x, index as u32 / view.size.x);
+            let up = view.size.y - 1 - row;
+            let across = view.low.truncate()
+                + (glam::DVec2::new(f64::from(column), f64::from(up)) + 0.5) / view.texels_per_length();
+            Lit {
+                position: across.extend(f64::from(height)),
+                normal: Vec3::new(x, y, z).as_dvec3().normalize(),
+            }
+        });
     Ok(lit.collect())
 }
 

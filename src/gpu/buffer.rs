@@ -63,7 +63,11 @@ pub fn storage(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
 }
 
 /// A storage buffer of structs in WGSL's layout, for kernels to read.
-pub fn storage_array<T: ShaderType + ShaderSize + WriteInto>(gpu: &Gpu, label: &str, values: &[T]) -> wgpu::Buffer {
+pub fn storage_array<T: ShaderType + ShaderSize + WriteInto>(
+    gpu: &Gpu,
+    label: &str,
+    values: &[T],
+) -> wgpu::Buffer {
     let mut bytes = StorageBuffer::new(Vec::<u8>::new());
     let _ = bytes.write(&values);
     storage_of(gpu, label, &bytes.into_inner())

@@ -1,5 +1,10 @@
 //! Which meshes scatter, where they are and how large: the space in which their light transport is computed.
 
+use super::combine::Radiosity;
+use super::light_gbuffer::LightViews;
+use super::scattered_radiosity::ScatteredRadiosity;
+use super::scattering_gbuffer::CameraMaps;
+use super::surface_points::SurfacePoints;
 use crate::components::{Placement, SceneSettings, Shading, Subsurface};
 use crate::loading::{LoadedMesh, placed_corners};
 use bevy_ecs::prelude::*;
@@ -54,5 +59,18 @@ pub(crate) fn measure(
     }
     for entity in &former {
         commands.entity(entity).remove::<Body>();
+    }
+}
+
+/// What was computed for a mesh goes when it no longer scatters.
+pub(crate) fn forget(
+    mut commands: Commands,
+    mut former: RemovedComponents<Body>,
+    bodies: Query<(), With<Body>>,
+) {
+    for entity in former.read().filter(|entity| !bodies.contains(*entity)) {
+        commands
+            .entity(entity)
+            .try_remove::<(SurfacePoints, LightViews, CameraMaps, ScatteredRadiosity, Radiosity)>();
     }
 }

@@ -8,8 +8,9 @@ use super::light_gbuffer::LightViews;
 use super::scattered_radiosity::ScatteredRadiosity;
 use super::surface_points::SurfacePoints;
 use crate::components::DirectionalLight;
-use crate::gpu::{Invocations, 
-    Gpu, GpuError, Kernel, KernelDescriptor, PassTimer, binding, storage, storage_of, uniform_buffer,
+use crate::gpu::{
+    Gpu, GpuError, Invocations, Kernel, KernelDescriptor, PassTimer, binding, storage, storage_of,
+    uniform_buffer,
 };
 use crate::render::Failure;
 use crate::{mirrors::mirror, report::Report};
@@ -57,14 +58,10 @@ pub(crate) fn run(
     gpu: Res<Gpu>,
     mut bodies: Bodies,
     lights: Query<&DirectionalLight>,
-    former: Query<Entity, (With<Radiosity>, Without<Body>)>,
     mut combiner: ResMut<Combiner>,
     mut timer: Option<ResMut<PassTimer>>,
     (mut report, mut failure): (ResMut<Report>, ResMut<Failure>),
 ) {
-    for entity in &former {
-        commands.entity(entity).remove::<Radiosity>();
-    }
     let mut held = 0;
     for (entity, points, views, layers, mut radiosity) in &mut bodies {
         let irradiance = |light: Entity| lights.get(light).map_or(Vec3::ZERO, |light| light.irradiance);

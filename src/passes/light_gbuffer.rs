@@ -71,8 +71,7 @@ impl Default for LightTexels {
 /// Bytes of all views of a mesh together, at most; with many lights each gets fewer texels.
 const BUDGET: u64 = 256 << 20;
 
-type Meshes<'w, 's> =
-    Query<'w, 's, (Entity, &'static MeshBuffers, &'static Placement, &'static LoadedMesh)>;
+type Meshes<'w, 's> = Query<'w, 's, (Entity, &'static MeshBuffers, &'static Placement, &'static LoadedMesh)>;
 type Bodies<'w, 's> = Query<
     'w,
     's,
@@ -92,14 +91,9 @@ pub(crate) fn run(
     mut bodies: Bodies,
     meshes: Meshes,
     lights: Query<(Entity, &DirectionalLight, Option<&Motion>)>,
-    former: Query<Entity, (With<LightViews>, Without<Body>)>,
     (mut gbuffer, mut version): (ResMut<Gbuffer>, ResMut<LightViewVersion>),
-    mut timer: Option<ResMut<PassTimer>>,
-    (mut report, mut failure): (ResMut<Report>, ResMut<Failure>),
+    (mut timer, mut report, mut failure): (Option<ResMut<PassTimer>>, ResMut<Report>, ResMut<Failure>),
 ) {
-    for entity in &former {
-        commands.entity(entity).remove::<LightViews>();
-    }
     let lights = lights_in_order(&lights);
     let affordable = (BUDGET / 16 / lights.len().max(1) as u64).isqrt() as u32;
     let texels = wanted.0.min(affordable).max(16);

@@ -34,7 +34,9 @@ impl Plugin for ScatteringPlugin {
         app.add_systems(
             Update,
             (
-                (body::measure, surface_points::refine, light_gbuffer::run).chain().in_set(Stage::LightGbuffer),
+                (body::measure, body::forget, surface_points::refine, light_gbuffer::run)
+                    .chain()
+                    .in_set(Stage::LightGbuffer),
                 (scattering_gbuffer::spawn_cameras, scattering_gbuffer::run)
                     .chain()
                     .in_set(Stage::ScatteringGbuffer),

@@ -82,14 +82,10 @@ pub(crate) fn run(
     mut commands: Commands,
     (gpu, refinement): (Res<Gpu>, Res<Refinement>),
     mut bodies: Bodies,
-    former: Query<Entity, (With<ScatteredRadiosity>, Without<Body>)>,
     mut tools: (ResMut<Scatterer>, ResMut<Gbuffer>, ResMut<TexelChooser>),
     mut timer: Option<ResMut<PassTimer>>,
     (mut report, mut failure): (ResMut<Report>, ResMut<Failure>),
 ) {
-    for entity in &former {
-        commands.entity(entity).remove::<ScatteredRadiosity>();
-    }
     let mut held = 0;
     for (entity, body, subsurface, maps, (points, mesh), views, cameras, mut radiosity) in &mut bodies {
         let size = 16 * u64::from(points.count) * views.0.len().max(1) as u64;
@@ -105,7 +101,8 @@ pub(crate) fn run(
         kept.keep_dipole(subsurface);
         let medium = kept.dipole.2.uniform(LEAST_DISTANCE, body.millimetres);
         let job = Job { gpu: &gpu, body, maps, points, mesh, medium: &medium, model: subsurface.model };
-        let result = kept.refine(&job, views, cameras, *refinement, &mut tools, timer.as_deref_mut(), &mut report);
+        let result =
+            kept.refine(&job, views, cameras, *refinement, &mut tools, timer.as_deref_mut(), &mut report);
         failure.keep(result);
         if let Some(new) = new {
             commands.entity(entity).insert(new);
@@ -154,7 +151,9 @@ impl ScatteredRadiosity {
         for _ in 0..refinement.per_update.max(1) {
             // Layers start again together with what they are made from, so they can be at different sets.
             let sets: Vec<u32> = (0..views.0.len())
-                .map(|layer| self.made.get(layer).filter(|made| made.0 == recipe(layer)).map_or(0, |made| made.1))
+                .map(|layer| {
+                    self.made.get(layer).filter(|made| made.0 == recipe(layer)).map_or(0, |made| made.1)
+                })
                 .collect();
             let Some(set) = sets.iter().copied().min().filter(|set| *set < wanted) else { break };
             let turned = match cameras {

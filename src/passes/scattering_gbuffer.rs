@@ -12,8 +12,8 @@ use crate::components::{
     Auto, MapResolution, MapStrategy, ScatteringCamera, ScatteringCameraOf, ScatteringCameras, ScatteringMaps,
 };
 use crate::gpu::{
-    Gpu, GpuError, Invocations, Kernel, KernelDescriptor, Layers, PassTimer, Target, binding, storage, storage_array,
-    uniform_buffer,
+    Gpu, GpuError, Invocations, Kernel, KernelDescriptor, Layers, PassTimer, Target, binding, storage,
+    storage_array, uniform_buffer,
 };
 use crate::loading::LoadedMesh;
 use crate::optics::sampling::{halton, sphere_point};
@@ -113,8 +113,10 @@ pub(crate) fn spawn_cameras(
     automatic: Query<(), With<AutomaticCamera>>,
 ) {
     for (mesh, maps, by_hand, children) in &bodies {
-        let own: Vec<Entity> = children.into_iter().flatten().copied().filter(|child| automatic.contains(*child)).collect();
-        let has_hand = by_hand.is_some_and(|cameras| cameras.iter().any(|camera| !automatic.contains(camera)));
+        let own: Vec<Entity> =
+            children.into_iter().flatten().copied().filter(|child| automatic.contains(*child)).collect();
+        let has_hand =
+            by_hand.is_some_and(|cameras| cameras.iter().any(|camera| !automatic.contains(camera)));
         let wanted = if uses_maps(maps, has_hand) { maps.cameras } else { 0 };
         if own.len() == wanted as usize {
             continue;
@@ -148,16 +150,18 @@ type Mapped<'a> = (
     Option<&'a CameraMaps>,
 );
 
+type Cameras<'w, 's> =
+    Query<'w, 's, (Entity, Option<&'static ScatteringCamera>, Option<&'static AutomaticCamera>)>;
+
 /// Makes the maps that are missing or stale.
 pub(crate) fn run(
     mut commands: Commands,
     (gpu, picture): (Res<Gpu>, Res<Picture>),
     bodies: Query<Mapped>,
-    cameras: Query<(Entity, Option<&ScatteringCamera>, Option<&AutomaticCamera>)>,
-    former: Query<Entity, (With<CameraMaps>, Or<(Without<Body>, Without<ScatteringCameras>)>)>,
+    (cameras, former): (Cameras, Query<Entity, (With<CameraMaps>, Without<ScatteringCameras>)>),
     (mut gbuffer, mut chooser): (ResMut<Gbuffer>, ResMut<TexelChooser>),
-    mut timer: Option<ResMut<PassTimer>>,
-    (mut report, mut failure, mut problems): (ResMut<Report>, ResMut<Failure>, ResMut<Problems>),
+    (mut timer, mut report): (Option<ResMut<PassTimer>>, ResMut<Report>),
+    (mut failure, mut problems): (ResMut<Failure>, ResMut<Problems>),
 ) {
     for entity in &former {
         commands.entity(entity).remove::<CameraMaps>();
@@ -192,7 +196,16 @@ pub(crate) fn run(
             continue;
         }
         let timing = timer.as_mut();
-        match build(&gpu, &mut gbuffer, &mut chooser, mesh, recipe, 0, timing.map(|timer| &mut **timer), &mut report) {
+        match build(
+            &gpu,
+            &mut gbuffer,
+            &mut chooser,
+            mesh,
+            recipe,
+            0,
+            timing.map(|timer| &mut **timer),
+            &mut report,
+        ) {
             Ok(maps) => {
                 held += maps.bytes();
                 commands.entity(entity).insert(maps);
@@ -204,11 +217,7 @@ pub(crate) fn run(
 }
 
 /// Towards the cameras, in body space: those written by hand, and the automatic ones.
-fn directions(
-    body: &Body,
-    own: &ScatteringCameras,
-    cameras: &Query<(Entity, Option<&ScatteringCamera>, Option<&AutomaticCamera>)>,
-) -> (Vec<DVec3>, Vec<DVec3>) {
+fn directions(body: &Body, own: &ScatteringCameras, cameras: &Cameras) -> (Vec<DVec3>, Vec<DVec3>) {
     let mut entities: Vec<Entity> = own.iter().collect();
     entities.sort();
     let (mut by_hand, mut automatic) = (Vec::new(), Vec::new());
@@ -292,7 +301,8 @@ pub(crate) fn build(
         let timing = timer.as_mut().and_then(|timer| timer.time("scattering_gbuffer"));
         let seen = [(&recipe.mesh, body.body_from_mesh, true)];
         let onto = (&layers.layer(layer as u32), &depth.view);
-        triangles += gbuffer.draw(gpu, "scattering_gbuffer", view, view.high.z, &seen, onto, timing, report)?;
+        triangles +=
+            gbuffer.draw(gpu, "scattering_gbuffer", view, view.high.z, &seen, onto, timing, report)?;
     }
     let texels = u64::from(size.element_product()) * views.len() as u64;
     report.ran("scattering_gbuffer", &[("texels", texels), ("triangles", triangles)]);
@@ -362,7 +372,10 @@ fn choose(
 fn kernel(gpu: &Gpu, entry_point: &str) -> Result<Kernel, GpuError> {
     let mut bindings = vec![binding::UNIFORM, binding::STORAGE, binding::LAYERS, binding::STORAGE];
     bindings.extend([binding::STORAGE_OUT; 6]);
-    Kernel::new(gpu, &KernelDescriptor { name: "scattering_texels", generated: &[], entry_point, bindings: &bindings })
+    Kernel::new(
+        gpu,
+        &KernelDescriptor { name: "scattering_texels", generated: &[], entry_point, bindings: &bindings },
+    )
 }
 
 fn map_camera(body: &Body, view: &OrthographicView) -> MapCameraUniform {

@@ -50,12 +50,8 @@ pub(crate) fn refine(
     gpu: Res<Gpu>,
     (view, picture): (Res<View>, Res<Picture>),
     meshes: Query<Refinable>,
-    former: Query<Entity, (With<SurfacePoints>, Without<Body>)>,
     mut report: ResMut<Report>,
 ) {
-    for entity in &former {
-        commands.entity(entity).remove::<SurfacePoints>();
-    }
     let mut held = 0;
     for (entity, mesh, buffers, body, subsurface, points) in &meshes {
         let spacing = spacing(&view, &picture, body, subsurface);
@@ -66,7 +62,8 @@ pub(crate) fn refine(
             continue;
         }
         let Some(data) = &mesh.data else { continue };
-        let most = if gpu.is_software() { most_points_in_software(data.positions.len()) } else { MOST_POINTS };
+        let most =
+            if gpu.is_software() { most_points_in_software(data.positions.len()) } else { MOST_POINTS };
         let (refined, _) = data.refined(body.body_from_mesh.matrix3, spacing, most);
         let is_same = refined.positions.len() == data.positions.len();
         let mesh = if is_same { buffers.clone() } else { MeshBuffers::new(&gpu, &refined) };
@@ -94,10 +91,7 @@ impl SurfacePoints {
 /// the picture shows.
 fn spacing(view: &View, picture: &Picture, body: &Body, subsurface: &Subsurface) -> f64 {
     let mean_free_path = subsurface.material.coefficients().map_or(f64::INFINITY, |channels| {
-        channels
-            .iter()
-            .map(|channel| channel.diffusion().sigma_t_prime.recip())
-            .fold(f64::INFINITY, f64::min)
+        channels.iter().map(|channel| channel.diffusion().sigma_t_prime.recip()).fold(f64::INFINITY, f64::min)
             / body.millimetres
     });
     let pixel = PIXELS * pixel(view, picture, body);

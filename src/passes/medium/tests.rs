@@ -21,7 +21,9 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::*;
-use crate::gpu::{Invocations, Gpu, GpuOptions, Kernel, KernelDescriptor, binding, read_buffer, storage, storage_of};
+use crate::gpu::{
+    Gpu, GpuOptions, Invocations, Kernel, KernelDescriptor, binding, read_buffer, storage, storage_of,
+};
 use encase::{ShaderType, StorageBuffer};
 use glam::Vec4;
 use serde_json::Value;
@@ -130,7 +132,8 @@ fn any_medium() -> Vec<MediumUniform> {
 
 /// A medium as published, the same in all channels.
 fn uncalibrated(medium: &Medium, boundary: Boundary, model: DipoleModel) -> MediumUniform {
-    Dipole { media: [*medium; 3], model, boundary, calibrated: [Calibration([1.0, 0.0, 0.0]); 3] }.uniform(0.0, 1.0)
+    Dipole { media: [*medium; 3], model, boundary, calibrated: [Calibration([1.0, 0.0, 0.0]); 3] }
+        .uniform(0.0, 1.0)
 }
 
 /// The number under a name.
@@ -181,7 +184,8 @@ fn coefficients_that_mean_nothing_make_no_medium() {
     let of = |sigma_a: f32, sigma_s: f32, g: f32, eta: f32| {
         let (sigma_a, sigma_s) = (Some(Vec3::splat(sigma_a)), Some(Vec3::splat(sigma_s)));
         let material = Material::Custom { sigma_a, sigma_s, sigma_t: None, albedo: None, g, eta };
-        Dipole::new(&Subsurface { material, ..Default::default() }).map(|dipole| dipole.uniform(LEAST_DISTANCE, 1.0))
+        Dipole::new(&Subsurface { material, ..Default::default() })
+            .map(|dipole| dipole.uniform(LEAST_DISTANCE, 1.0))
     };
     assert!(of(0.1, 1.0, 0.0, 1.3).is_some());
     assert!(

@@ -2,7 +2,9 @@
 
 use super::kernels::{Place, Scatterer, Variant};
 use crate::components::{Auto, DipoleModel, MapStrategy, SampleRadius, ScatteringMaps};
-use crate::gpu::{Gpu, GpuError, Invocations, PassTimer, read_buffer, storage_array, uniform_array, uniform_buffer};
+use crate::gpu::{
+    Gpu, GpuError, Invocations, PassTimer, read_buffer, storage_array, uniform_array, uniform_buffer,
+};
 use crate::loading::LoadedMesh;
 use crate::optics::sampling::ExponentialDisc;
 use crate::passes::body::Body;
@@ -91,7 +93,17 @@ impl Job<'_> {
         ];
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         if let Some(maps) = maps {
-            self.at_texels(scatterer, variant, view, maps, &common, &disc, &mut encoder, timer.as_deref_mut(), report)?;
+            self.at_texels(
+                scatterer,
+                variant,
+                view,
+                maps,
+                &common,
+                &disc,
+                &mut encoder,
+                timer.as_deref_mut(),
+                report,
+            )?;
             self.gather(scatterer, maps, (layer, set), layers, &mut encoder, report)?;
         }
         common.extend([self.points.mesh.vertices.as_entire_binding(), layers.as_entire_binding()]);
@@ -146,8 +158,11 @@ impl Job<'_> {
             .map(|own| DMat4::from(view.view.view_from_body * own.view_from_body.inverse()).as_mat4())
             .collect();
         let texel = |own: &crate::passes::gbuffer::OrthographicView| own.texels_per_length().recip() as f32;
-        let views: Vec<Vec4> =
-            maps.views.iter().map(|own| own.low.truncate().as_vec2().extend(texel(own)).extend(0.0)).collect();
+        let views: Vec<Vec4> = maps
+            .views
+            .iter()
+            .map(|own| own.low.truncate().as_vec2().extend(texel(own)).extend(0.0))
+            .collect();
         let rotations = storage_array(self.gpu, "light from view", &rotations);
         let views = storage_array(self.gpu, "views", &views);
         let mut resources = common.to_vec();
