@@ -72,6 +72,7 @@
 mod app;
 pub mod cli;
 pub mod components;
+pub mod cpu;
 pub mod gpu;
 pub mod loading;
 pub mod mirrors;
@@ -84,5 +85,6 @@ pub mod scene;
 pub mod sources;
 mod view;
 pub use app::{SceneTime, Stage, TyndallPlugins};
+pub use passes::light_gbuffer::LightTexels;
 pub use passes::scattered_radiosity::Refinement;
 pub use view::Picture;

@@ -1,7 +1,7 @@
 //! The files that components name, read into the world.
 
 use crate::Stage;
-use crate::components::{Auto, Mesh, Placement, Volume};
+use crate::components::{Auto, Mesh, Placement, Subsurface, Volume};
 use crate::scene::{Problem, Problems};
 use crate::sources::{self, LayoutError, MeshData, MeshStatistics, RawLayout, SourceError, VolumeData};
 use bevy_app::{App, Plugin, Update};
@@ -69,10 +69,15 @@ pub(crate) fn placed_corners(placement: &Placement, bounds: (Vec3, Vec3)) -> imp
 
 fn load_meshes(
     mut commands: Commands,
-    meshes: Query<(Entity, &Mesh), Changed<Mesh>>,
+    meshes: Query<(Entity, Ref<Mesh>, Option<&LoadedMesh>), Or<(Changed<Mesh>, Added<Subsurface>)>>,
     mut problems: ResMut<Problems>,
 ) {
-    for (entity, mesh) in &meshes {
+    for (entity, mesh, loaded) in &meshes {
+        // What becomes translucent is read again if it was let go of: it is to be refined.
+        if !mesh.is_changed() && loaded.is_none_or(|loaded| loaded.data.is_some()) {
+            continue;
+        }
+        let mesh = &*mesh;
         if let Some(problem) = unsupported(mesh) {
             problems.0.push(problem.on(entity, "Mesh.0"));
             continue;

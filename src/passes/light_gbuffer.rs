@@ -58,8 +58,15 @@ struct Blocker {
 #[derive(Resource, Default, Debug)]
 pub(crate) struct LightViewVersion(u64);
 
-/// Texels along the longer side of a view, at most.
-const TEXELS: u32 = 512;
+/// Texels along the longer side of a light's view of a translucent mesh, at most; with very many lights it is fewer.
+#[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightTexels(pub u32);
+
+impl Default for LightTexels {
+    fn default() -> Self {
+        Self(512)
+    }
+}
 
 /// Bytes of all views of a mesh together, at most; with many lights each gets fewer texels.
 const BUDGET: u64 = 256 << 20;
@@ -81,7 +88,7 @@ type Bodies<'w, 's> = Query<
 
 pub(crate) fn run(
     mut commands: Commands,
-    gpu: Res<Gpu>,
+    (gpu, wanted): (Res<Gpu>, Res<LightTexels>),
     mut bodies: Bodies,
     meshes: Meshes,
     lights: Query<(Entity, &DirectionalLight, Option<&Motion>)>,
@@ -95,7 +102,7 @@ pub(crate) fn run(
     }
     let lights = lights_in_order(&lights);
     let affordable = (BUDGET / 16 / lights.len().max(1) as u64).isqrt() as u32;
-    let texels = TEXELS.min(affordable).max(16);
+    let texels = wanted.0.min(affordable).max(16);
     let mut held = 0;
     for (entity, body, buffers, placement, mesh, mut views) in &mut bodies {
         let mut own = LightViews::default();

@@ -32,7 +32,7 @@ mirror! {
 
 /// The least distance to the real source, in mean free paths. The published model has none, and shines without bound where a lit surface
 /// meets one that faces away from it (mu_0 = 0); on a plane this changes nothing up to 75 degrees of incidence.
-const LEAST_DISTANCE: f64 = 1.0 / 12.0;
+pub(crate) const LEAST_DISTANCE: f64 = 1.0 / 12.0;
 
 /// The fewest and the most mean free paths to a body's unit of length of which 32 bits hold the square and all that it is multiplied with.
 /// With fewer a body shows nothing, and with more light leaves where it entered.

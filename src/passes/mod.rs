@@ -25,6 +25,7 @@ impl Plugin for ScatteringPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<gbuffer::Gbuffer>()
             .init_resource::<light_gbuffer::LightViewVersion>()
+            .init_resource::<light_gbuffer::LightTexels>()
             .init_resource::<scattering_gbuffer::TexelChooser>()
             .init_resource::<scattered_radiosity::Scatterer>()
             .init_resource::<scattered_radiosity::Refinement>()
