@@ -26,12 +26,12 @@ pub struct Arguments {
     /// Only these sheets; may be given more than once
     #[arg(long, value_name = "NAME", value_parser = names())]
     only: Vec<String>,
-    /// Pixels of a cell across and down
+    /// Pixels of a square cell across and down; others keep the height
     #[arg(long, value_name = "WxH", default_value = "480x480", value_parser = size)]
     size: (u32, u32),
-    /// Sets of samples to average in each cell
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=65_536))]
-    passes: u32,
+    /// Sets of samples to average in each cell, else as many as the sheet is made for
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    passes: Option<u32>,
 }
 
 fn names() -> clap::builder::PossibleValuesParser {
@@ -72,14 +72,17 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 
 fn draw(sheet: &Sheet, scan: &Path, arguments: &Arguments, environment: &Environment) -> Result<PathBuf> {
     let posed = scene::Posed::read(scan, sheet)?;
+    let (across, down) = arguments.size;
+    let size = ((f64::from(across) * sheet.aspect).round().max(1.0) as u32, down);
+    let passes = arguments.passes.unwrap_or(sheet.passes);
     let mut pictures = Vec::new();
     for (index, cell) in sheet.cells().iter().enumerate() {
         let stem = format!("{FOLDER}/scenes/{}_{index:02}", sheet.name);
         let (file, picture) = (format!("{stem}.ron"), format!("{stem}.png"));
-        let text = scene::text(sheet, cell, &posed, arguments.size);
+        let text = scene::text(sheet, cell, &posed, size);
         fs::write(&file, text).with_context(|| format!("cannot write {file}"))?;
         eprintln!("{file}: {}", cell.label);
-        render(&file, &picture, arguments, environment)?;
+        render(&file, &picture, size, passes, environment)?;
         let image = image::open(&picture).with_context(|| format!("cannot read {picture}"))?;
         pictures.push((cell.label.clone(), image.to_rgb8()));
     }
@@ -90,11 +93,16 @@ fn draw(sheet: &Sheet, scan: &Path, arguments: &Arguments, environment: &Environ
 }
 
 /// With the optimised program where there is one; brought up to date first, for a stale one would show what no longer is.
-fn render(scene: &str, picture: &str, arguments: &Arguments, environment: &Environment) -> Result<()> {
+fn render(
+    scene: &str,
+    picture: &str,
+    (across, down): (u32, u32),
+    passes: u32,
+    environment: &Environment,
+) -> Result<()> {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
     let program = format!("tyndall{}", std::env::consts::EXE_SUFFIX);
     let profile = if target.join("release").join(program).is_file() { "release" } else { "dev" };
-    let (across, down) = arguments.size;
     cargo()
         .arguments([
             "run",
@@ -109,7 +117,7 @@ fn render(scene: &str, picture: &str, arguments: &Arguments, environment: &Envir
             "render",
         ])
         .arguments([scene, "-o", picture, "--size", &format!("{across}x{down}")])
-        .arguments(["--passes", &arguments.passes.to_string()])
+        .arguments(["--passes", &passes.to_string()])
         .inside(environment)
         .run()
 }

@@ -12,6 +12,10 @@ pub struct Sheet {
     /// How tall it is, in millimetres: small enough for light to come through.
     pub millimetres: f64,
     pub columns: usize,
+    /// How much wider than tall its cells are.
+    pub aspect: f64,
+    /// Sets of samples that are averaged where the command says nothing else.
+    pub passes: u32,
     /// The cells of a row, one after the other for each of `lights`.
     row: &'static [Look],
     lights: &'static [Light],
@@ -44,8 +48,10 @@ pub struct Light {
     pub irradiance: f64,
 }
 
-const FRONT: Light = Light { label: "from the front", direction: (0.6, -0.7, -1.0), irradiance: 3.0 };
-const BEHIND: Light = Light { label: "from behind", direction: (-0.25, -0.45, 1.0), irradiance: 9.0 };
+const FRONT: Light = Light { label: "front", direction: (0.6, -0.7, -1.0), irradiance: 3.0 };
+const BEHIND: Light = Light { label: "behind", direction: (-0.25, -0.45, 1.0), irradiance: 5.0 };
+/// For what lets little through.
+const BRIGHT: Light = Light { irradiance: 12.0, ..BEHIND };
 
 const PLAIN: Look =
     Look { label: "", material: "cream", model: "CalibratedDipole", specular: "None", maps: "" };
@@ -67,15 +73,22 @@ pub const SHEETS: &[Sheet] = &[
         scan: Scan::Bunny,
         turned: (0.0, 0.0),
         millimetres: 40.0,
-        columns: 5,
+        columns: 6,
+        aspect: 1.0,
+        passes: 1,
         row: &[
             maps("Adaptive, points", ""),
             maps("Adaptive, K = 4", "cameras: 4, resolution: Texels(512, 512)"),
             maps("Adaptive, K = 8", "cameras: 8, resolution: Texels(512, 512)"),
             maps("Adaptive, K = 16", "cameras: 16, resolution: Texels(512, 512)"),
             maps("Uniform, K = 16", "strategy: Uniform, cameras: 16, resolution: Texels(512, 512)"),
+            // The radius at which what is published looks best here.
+            maps(
+                "Uniform, K = 16, 2 mm",
+                "strategy: Uniform, cameras: 16, resolution: Texels(512, 512), radius: Millimetres(2.0)",
+            ),
         ],
-        lights: &[FRONT, BEHIND],
+        lights: &[FRONT, BRIGHT],
     },
     Sheet {
         name: "dragon",
@@ -84,6 +97,8 @@ pub const SHEETS: &[Sheet] = &[
         turned: (0.0, 0.0),
         millimetres: 25.0,
         columns: 2,
+        aspect: 1.4,
+        passes: 16,
         row: &[Look { material: "skin1", ..PLAIN }],
         lights: &[FRONT, BEHIND],
     },
@@ -94,6 +109,8 @@ pub const SHEETS: &[Sheet] = &[
         turned: (0.0, 0.0),
         millimetres: 40.0,
         columns: 6,
+        aspect: 0.6,
+        passes: 16,
         row: &[
             model("milk, standard", "wholemilk", "StandardDipole"),
             model("milk, directional", "wholemilk", "DirectionalDipole"),
@@ -111,6 +128,8 @@ pub const SHEETS: &[Sheet] = &[
         turned: (-90.0, 180.0),
         millimetres: 60.0,
         columns: 2,
+        aspect: 0.7,
+        passes: 16,
         row: &[Look { material: "marble", specular: "Some((strength: 0.04, shininess: 120.0))", ..PLAIN }],
         lights: &[FRONT, BEHIND],
     },
@@ -121,8 +140,10 @@ pub const SHEETS: &[Sheet] = &[
         turned: (0.0, 0.0),
         millimetres: 20.0,
         columns: 2,
+        aspect: 1.0,
+        passes: 16,
         row: &[Look { material: "potato", ..PLAIN }],
-        lights: &[FRONT, BEHIND],
+        lights: &[FRONT, BRIGHT],
     },
     Sheet {
         name: "spot",
@@ -131,6 +152,8 @@ pub const SHEETS: &[Sheet] = &[
         turned: (0.0, 150.0),
         millimetres: 40.0,
         columns: 2,
+        aspect: 0.8,
+        passes: 16,
         row: &[Look { material: "wax", ..PLAIN }],
         lights: &[FRONT, BEHIND],
     },
