@@ -74,12 +74,12 @@ fn measure(folder: &Path, mesh: &str, millimetres: f64, settings: &[Setting]) {
     let mut bench = Bench::new(folder, mesh, millimetres);
     let (probes, truth) = bench.truth();
     let local = bench.least(REPETITIONS + 2, |bench| {
-        bench.world().entity_mut(bench.mesh).insert(Shading::Local);
+        bench.set(Shading::Local);
     });
-    bench.world().entity_mut(bench.mesh).insert(Shading::Scattering);
+    bench.set(Shading::Scattering);
     let mut published = None;
     for Setting { name, maps } in settings {
-        bench.world().entity_mut(bench.mesh).insert(maps.clone());
+        bench.set(maps.clone());
         bench.frame();
         let error = bench.error(&probes, &truth);
         let still = bench.least(REPETITIONS + 2, |_| ());
@@ -130,6 +130,10 @@ impl Bench {
         let mesh = world.query_filtered::<Entity, With<Subsurface>>().single(world).unwrap();
         let light = world.query_filtered::<Entity, With<DirectionalLight>>().single(world).unwrap();
         Self { app, mesh, light, step: 0.0 }
+    }
+
+    fn set(&mut self, component: impl Component) {
+        self.app.world_mut().entity_mut(self.mesh).insert(component);
     }
 
     fn world(&mut self) -> &mut World {

@@ -42,9 +42,9 @@ fn lit_at(place: vec2f) -> vec4f {
     }
     // The first row of a texture is the top.
     let texel = textureLoad(light_gbuffer, vec2u(vec2f(at.x, size.y - 1.0 - floor(at.y))), 0);
-    // From the middle of the texel to the place, along the tangent plane. Steep planes are not to be trusted that far.
+    // From the middle of the texel to the place, along the tangent plane.
     let aside = (fract(at) - 0.5) / estimator.inverse_texel;
-    let slope = -texel.xy / max(texel.z, 0.25);
+    let slope = -texel.xy / max(texel.z, 0.01);
     return vec4f(texel.xyz, texel.w + dot(slope, aside));
 }
 

@@ -2,7 +2,7 @@
 //
 // The radius of u in 0..1 is c (e^(L u) - 1): even within the core c, where the kernel is flat, and even in the logarithm beyond. The
 // integrand is 0 at both ends of u and periodic in the angle, so a lattice converges fast where the light is smooth. Each point shifts
-// the lattice by an amount of its own.
+// the lattice by an amount of its own. Where the light grazes the surface, the disc is as narrow as the light sees one on the surface.
 
 const PI = 3.14159265358979;
 
@@ -13,6 +13,9 @@ struct Disc {
     core: f32,
     // L.
     decades: f32,
+    // The direction in which the disc is narrower, and how much.
+    steepest: vec2f,
+    narrowing: f32,
 }
 
 // A hash with good avalanche (PCG; O'Neill 2014), as two numbers in 0..1.
@@ -33,10 +36,13 @@ fn disc_of(x_o: vec3f, index: u32) -> Disc {
     let core = estimator.core + 0.05 * depth;
     // Beyond e^-14 there is nothing to see: where mu sqrt(depth^2 + radius^2) exceeds mu depth by 14.
     let fade = 14.0 / max(estimator.least_mu, 1e-20);
-    let radius = min(sqrt(fade) * sqrt(fade + 2.0 * depth), estimator.radius);
+    let narrowing = select(1.0, clamp(above.z, 0.02, 1.0), any(above.xyz != vec3f(0.0)));
+    let slant = length(above.xy);
+    let steepest = select(vec2f(1.0, 0.0), above.xy / max(slant, 1e-6), slant > 1e-6);
+    let radius = min(sqrt(fade) * sqrt(fade + 2.0 * depth), estimator.radius) / narrowing;
     // Further sets of samples fill the gaps of the earlier ones (R2 sequence; Roberts 2018).
     let shift = fract(hash(vec2u(index, 0u)) + f32(estimator.pass_index) * vec2f(0.7548776662, 0.5698402910));
-    return Disc(estimator.samples, shift, core, log(1.0 + radius / core));
+    return Disc(estimator.samples, shift, core, log(1.0 + radius / core), steepest, narrowing);
 }
 
 // A place on the disc, and its weight: the area that it stands for.
@@ -46,6 +52,8 @@ fn disc_sample(disc: Disc, i: u32) -> vec3f {
     let turn = fract(f32((i * 2654435769u) >> 8u) / 16777216.0 + disc.shift.y);
     let stretched = disc.core * exp(disc.decades * u);
     let radius = stretched - disc.core;
-    let weight = 2.0 * PI * radius * stretched * disc.decades / f32(disc.samples);
-    return vec3f(radius * cos(2.0 * PI * turn), radius * sin(2.0 * PI * turn), weight);
+    let weight = disc.narrowing * 2.0 * PI * radius * stretched * disc.decades / f32(disc.samples);
+    let along = disc.narrowing * radius * cos(2.0 * PI * turn);
+    let across = radius * sin(2.0 * PI * turn);
+    return vec3f(along * disc.steepest + across * vec2f(-disc.steepest.y, disc.steepest.x), weight);
 }

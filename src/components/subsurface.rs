@@ -1,5 +1,5 @@
 use super::{Names, Phong, Range, ScatteringMaps, Unit, Validate, attributes::ReflectValidate};
-use crate::optics::materials::{self, Coefficients};
+use crate::optics::{materials, medium::Medium};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::Vec3;
@@ -90,7 +90,7 @@ impl Default for Material {
 
 impl Material {
     /// What red, green and blue light meets. None for a name that is not known, or where neither pair of coefficients is complete.
-    pub fn coefficients(&self) -> Option<[Coefficients; 3]> {
+    pub fn coefficients(&self) -> Option<[Medium; 3]> {
         let (first, second, g, eta) = match self {
             Self::Preset(name) => return materials::named(name).map(|medium| medium.coefficients()),
             Self::Custom { sigma_a: Some(a), sigma_s: Some(s), g, eta, .. } => {
@@ -102,7 +102,7 @@ impl Material {
             }
             Self::Custom { .. } => return None,
         };
-        Some(std::array::from_fn(|colour| Coefficients {
+        Some(std::array::from_fn(|colour| Medium {
             sigma_a: first[colour],
             sigma_s: second[colour],
             g: f64::from(*g),

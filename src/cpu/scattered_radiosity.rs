@@ -10,7 +10,7 @@ use crate::optics::moments::Boundary;
 use crate::passes::body::Body;
 use crate::passes::combine::Radiosity;
 use crate::passes::light_gbuffer::{LightView, LightViews};
-use crate::passes::medium::{LEAST_DISTANCE, medium};
+use crate::passes::medium::LEAST_DISTANCE;
 use crate::passes::surface_points::SurfacePoints;
 use bevy_ecs::prelude::*;
 use glam::{DVec3, Vec3};
@@ -116,8 +116,7 @@ enum Model {
 impl Channel {
     fn of(subsurface: &Subsurface, millimetres: f64) -> Option<[Self; 3]> {
         let channels = subsurface.material.coefficients()?;
-        Some(channels.map(|coefficients| {
-            let per_mm = medium(&coefficients);
+        Some(channels.map(|per_mm| {
             let scaled = Medium {
                 sigma_a: per_mm.sigma_a * millimetres,
                 sigma_s: per_mm.sigma_s * millimetres,

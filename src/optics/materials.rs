@@ -5,18 +5,7 @@
 //! scattering coefficients are reduced already, sigma_s' = (1 - g) sigma_s, so each medium is given as the isotropic one (g = 0) with
 //! that coefficient.
 
-/// What one colour meets in a homogeneous medium. The two coefficients are per millimetre.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coefficients {
-    /// Absorption, per mm.
-    pub sigma_a: f64,
-    /// Scattering, per mm; not reduced.
-    pub sigma_s: f64,
-    /// Mean cosine of the angle by which the medium scatters.
-    pub g: f64,
-    /// Index of refraction relative to the outside.
-    pub eta: f64,
-}
+use super::medium::Medium;
 
 /// A medium with a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,8 +26,8 @@ impl NamedMedium {
     }
 
     /// The isotropic medium of each colour.
-    pub fn coefficients(&self) -> [Coefficients; 3] {
-        std::array::from_fn(|colour| Coefficients {
+    pub fn coefficients(&self) -> [Medium; 3] {
+        std::array::from_fn(|colour| Medium {
             sigma_a: self.sigma_a[colour],
             sigma_s: self.sigma_s_reduced[colour],
             g: 0.0,

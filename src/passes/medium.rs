@@ -4,7 +4,6 @@ use crate::components::{DipoleModel, Subsurface};
 use crate::mirrors::mirror;
 use crate::optics::calibration::{Calibration, calibration};
 use crate::optics::dipole::StandardDipole;
-use crate::optics::materials::Coefficients;
 use crate::optics::medium::Medium;
 use crate::optics::moments::Boundary;
 use glam::{DVec3, Vec3};
@@ -38,50 +37,45 @@ pub(crate) const LEAST_DISTANCE: f64 = 1.0 / 12.0;
 /// With fewer a body shows nothing, and with more light leaves where it entered.
 const SCALES: (f64, f64) = (1e-30, 1e15);
 
-impl MediumUniform {
-    /// The medium of a body, of which a unit of length has so many millimetres. `None` where its material has no meaning.
-    pub fn new(subsurface: &Subsurface, millimetres: f64) -> Option<Self> {
-        let channels = subsurface.material.coefficients()?;
-        let sound = |Coefficients { sigma_a, sigma_s, g, eta }: &Coefficients| {
+/// A model of a material: what it takes a while to find, and does not depend on the size of a body.
+#[derive(Clone, Debug)]
+pub(crate) struct Dipole {
+    media: [Medium; 3],
+    model: DipoleModel,
+    boundary: Boundary,
+    calibrated: [Calibration; 3],
+}
+
+impl Dipole {
+    /// The model of a mesh. `None` where its material has no meaning.
+    pub fn new(subsurface: &Subsurface) -> Option<Self> {
+        let media = subsurface.material.coefficients()?;
+        let sound = |Medium { sigma_a, sigma_s, g, eta }: &Medium| {
             [sigma_a, sigma_s, g, eta].iter().all(|value| value.is_finite())
                 && sigma_a.min(*sigma_s) >= 0.0
                 && *eta > 0.0
         };
-        if !channels.iter().all(sound) {
-            return None;
-        }
-        Some(Self::of(
-            &channels.map(|channel| medium(&channel)),
-            subsurface.model,
-            LEAST_DISTANCE,
-            millimetres,
-        ))
+        media.iter().all(sound).then(|| Self::of(media, subsurface.model))
     }
 
-    /// Lengths of `media` are millimetres; those of the result are as many of them as `millimetres` says.
-    pub fn of(media: &[Medium; 3], model: DipoleModel, least_distance: f64, millimetres: f64) -> Self {
+    /// The model of media whose lengths are millimetres.
+    pub fn of(media: [Medium; 3], model: DipoleModel) -> Self {
         let calibrated = media.map(|medium| match model {
             DipoleModel::CalibratedDipole => calibration(&medium),
             DipoleModel::DirectionalDipole | DipoleModel::StandardDipole => Calibration([1.0, 0.0, 0.0]),
         });
-        Self::with(media, &calibrated, Boundary::exact(media[0].eta), model, least_distance, millimetres)
+        Self { media, model, boundary: Boundary::exact(media[0].eta), calibrated }
     }
 
-    /// The same with a boundary and calibrations that are known.
-    fn with(
-        media: &[Medium; 3],
-        calibrated: &[Calibration; 3],
-        boundary: Boundary,
-        model: DipoleModel,
-        least_distance: f64,
-        millimetres: f64,
-    ) -> Self {
+    /// The same for a body whose unit of length has so many millimetres.
+    pub fn uniform(&self, least_distance: f64, millimetres: f64) -> MediumUniform {
+        let Self { media, model, boundary, calibrated } = self;
         let diffusion = media.map(|medium| lengthened(&medium).diffusion());
         let scale = |c: usize| (diffusion[c].sigma_t_prime * millimetres).clamp(SCALES.0, SCALES.1);
         let per_channel = |value: &dyn Fn(usize) -> f64| DVec3::from(std::array::from_fn(value)).as_vec3();
-        let standard = model == DipoleModel::StandardDipole;
+        let standard = *model == DipoleModel::StandardDipole;
         let pi = std::f64::consts::PI;
-        Self {
+        MediumUniform {
             sigma_t_prime: per_channel(&scale),
             eta: boundary.eta as f32,
             mu: per_channel(&|c| (3.0 * diffusion[c].one_minus_albedo_prime).sqrt()),
@@ -121,12 +115,6 @@ fn lengthened(medium: &Medium) -> Medium {
         },
         ..*medium
     }
-}
-
-/// The medium of one channel, lengths in millimetres.
-pub(crate) fn medium(coefficients: &Coefficients) -> Medium {
-    let Coefficients { sigma_a, sigma_s, g, eta } = *coefficients;
-    Medium { sigma_a, sigma_s, g, eta }
 }
 
 #[cfg(test)]

@@ -10,11 +10,11 @@ mod kernels;
 use super::body::Body;
 use super::gbuffer::Gbuffer;
 use super::light_gbuffer::LightViews;
-use super::medium::MediumUniform;
+use super::medium::{Dipole, LEAST_DISTANCE, MediumUniform};
 use super::scattering_gbuffer::{self, CameraMaps, TexelChooser};
 use super::surface_points::SurfacePoints;
 use super::upload::MeshBuffers;
-use crate::components::{ScatteringMaps, Subsurface};
+use crate::components::{DipoleModel, Material, ScatteringMaps, Subsurface};
 use crate::gpu::{Gpu, GpuError, PassTimer, storage};
 use crate::loading::LoadedMesh;
 use crate::render::Failure;
@@ -31,7 +31,8 @@ pub(crate) struct ScatteredRadiosity {
     pub layers: wgpu::Buffer,
     /// What each layer was made from, and of how many sets of samples it is the mean.
     made: Vec<(Recipe, u32)>,
-    medium: (Subsurface, f64, MediumUniform),
+    /// The model, and what it was made from.
+    dipole: (Material, DipoleModel, Dipole),
     /// Counts up whenever the layers change.
     pub version: u64,
 }
@@ -96,13 +97,13 @@ pub(crate) fn run(
         let mut new = None;
         let kept = match radiosity.as_deref_mut() {
             Some(kept) if kept.layers.size() == size => kept,
-            _ => match ScatteredRadiosity::new(&gpu, size, subsurface, body) {
+            _ => match ScatteredRadiosity::new(&gpu, size, subsurface) {
                 Some(radiosity) => new.insert(radiosity),
                 None => continue,
             },
         };
-        kept.keep_medium(subsurface, body);
-        let medium = kept.medium.2.clone();
+        kept.keep_dipole(subsurface);
+        let medium = kept.dipole.2.uniform(LEAST_DISTANCE, body.millimetres);
         let job = Job { gpu: &gpu, body, maps, points, mesh, medium: &medium, model: subsurface.model };
         let result = kept.refine(&job, views, cameras, *refinement, &mut tools, timer.as_deref_mut(), &mut report);
         failure.keep(result);
@@ -114,21 +115,18 @@ pub(crate) fn run(
 }
 
 impl ScatteredRadiosity {
-    fn new(gpu: &Gpu, size: u64, subsurface: &Subsurface, body: &Body) -> Option<Self> {
-        let medium = MediumUniform::new(subsurface, body.millimetres)?;
-        let medium = (subsurface.clone(), body.millimetres, medium);
-        Some(Self { layers: storage(gpu, "scattered_radiosity", size), made: Vec::new(), medium, version: 0 })
+    fn new(gpu: &Gpu, size: u64, subsurface: &Subsurface) -> Option<Self> {
+        let dipole = (subsurface.material.clone(), subsurface.model, Dipole::new(subsurface)?);
+        Some(Self { layers: storage(gpu, "scattered_radiosity", size), made: Vec::new(), dipole, version: 0 })
     }
 
-    /// Derives the medium anew if what it is made of has changed.
-    fn keep_medium(&mut self, subsurface: &Subsurface, body: &Body) {
-        let (known, millimetres, _) = &self.medium;
-        let same = known.material == subsurface.material && known.model == subsurface.model;
-        if same && *millimetres == body.millimetres {
-            return;
-        }
-        if let Some(medium) = MediumUniform::new(subsurface, body.millimetres) {
-            self.medium = (subsurface.clone(), body.millimetres, medium);
+    /// Derives the model anew if what it is made from has changed.
+    fn keep_dipole(&mut self, subsurface: &Subsurface) {
+        let (material, model, _) = &self.dipole;
+        if (material, *model) != (&subsurface.material, subsurface.model)
+            && let Some(dipole) = Dipole::new(subsurface)
+        {
+            self.dipole = (subsurface.material.clone(), subsurface.model, dipole);
         }
     }
 

@@ -2,7 +2,6 @@
 //! and the picture call for.
 
 use super::body::Body;
-use super::medium::medium;
 use super::upload::MeshBuffers;
 use crate::components::{Projection, Subsurface};
 use crate::gpu::Gpu;
@@ -97,7 +96,7 @@ fn spacing(view: &View, picture: &Picture, body: &Body, subsurface: &Subsurface)
     let mean_free_path = subsurface.material.coefficients().map_or(f64::INFINITY, |channels| {
         channels
             .iter()
-            .map(|channel| medium(channel).diffusion().sigma_t_prime.recip())
+            .map(|channel| channel.diffusion().sigma_t_prime.recip())
             .fold(f64::INFINITY, f64::min)
             / body.millimetres
     });

@@ -21,7 +21,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use super::*;
-use crate::gpu::{Gpu, GpuOptions, Kernel, KernelDescriptor, binding, read_buffer, storage, storage_of};
+use crate::gpu::{Invocations, Gpu, GpuOptions, Kernel, KernelDescriptor, binding, read_buffer, storage, storage_of};
 use encase::{ShaderType, StorageBuffer};
 use glam::Vec4;
 use serde_json::Value;
@@ -114,7 +114,7 @@ fn evaluate(standard: bool, body: &str, media: &[MediumUniform], cases: &[Case])
     let results = storage(&GPU, "results", 16 * cases.len() as u64);
     let mut encoder = GPU.device.create_command_encoder(&Default::default());
     let resources = [media.as_entire_binding(), given.as_entire_binding(), results.as_entire_binding()];
-    kernel.run(&GPU, &mut encoder, &resources, cases.len() as u32, None);
+    kernel.run(&GPU, &mut encoder, &resources, Invocations::Count(cases.len() as u32), None);
     GPU.queue.submit([encoder.finish()]);
     bytemuck::pod_collect_to_vec(&read_buffer(&GPU, &results).unwrap())
 }
@@ -130,7 +130,7 @@ fn any_medium() -> Vec<MediumUniform> {
 
 /// A medium as published, the same in all channels.
 fn uncalibrated(medium: &Medium, boundary: Boundary, model: DipoleModel) -> MediumUniform {
-    MediumUniform::with(&[*medium; 3], &[Calibration([1.0, 0.0, 0.0]); 3], boundary, model, 0.0, 1.0)
+    Dipole { media: [*medium; 3], model, boundary, calibrated: [Calibration([1.0, 0.0, 0.0]); 3] }.uniform(0.0, 1.0)
 }
 
 /// The number under a name.
@@ -181,7 +181,7 @@ fn coefficients_that_mean_nothing_make_no_medium() {
     let of = |sigma_a: f32, sigma_s: f32, g: f32, eta: f32| {
         let (sigma_a, sigma_s) = (Some(Vec3::splat(sigma_a)), Some(Vec3::splat(sigma_s)));
         let material = Material::Custom { sigma_a, sigma_s, sigma_t: None, albedo: None, g, eta };
-        MediumUniform::new(&Subsurface { material, ..Default::default() }, 1.0)
+        Dipole::new(&Subsurface { material, ..Default::default() }).map(|dipole| dipole.uniform(LEAST_DISTANCE, 1.0))
     };
     assert!(of(0.1, 1.0, 0.0, 1.3).is_some());
     assert!(

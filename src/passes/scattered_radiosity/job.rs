@@ -197,7 +197,7 @@ impl Job<'_> {
     fn estimator(&self, view: &LightView, layer: usize, set: u32) -> EstimatorUniform {
         let view = &view.view;
         let light_from_mesh = view.view_from_body * self.body.body_from_mesh;
-        let largest = self.medium.sigma_t_prime.max_element();
+        let largest = self.of_scattering(self.medium.sigma_t_prime).fold(1e-30, f32::max);
         let samples = self.maps.samples.min(MOST_CANDIDATES);
         let radius = match self.maps.radius {
             SampleRadius::Auto => f32::INFINITY,
@@ -226,7 +226,13 @@ impl Job<'_> {
 
     /// The least effective transport coefficient of the three channels, per radius of the body.
     fn least_mu(&self) -> f32 {
-        (self.medium.mu * self.medium.sigma_t_prime).min_element()
+        self.of_scattering(self.medium.mu * self.medium.sigma_t_prime).fold(f32::INFINITY, f32::min).min(1e30)
+    }
+
+    /// The values of the channels that scatter at all; the others send nothing out, whatever their discs are.
+    fn of_scattering(&self, values: Vec3) -> impl Iterator<Item = f32> {
+        let strength = self.medium.strength;
+        (0..3).filter(move |channel| strength[*channel] > 0.0).map(move |channel| values[channel])
     }
 
     /// The points of the published disc, with the area that each stands for; none for the adaptive strategy.

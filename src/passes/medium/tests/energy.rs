@@ -75,7 +75,7 @@ fn a_plane_reflects_what_each_dipole_is_known_to() {
                 _ => Calibration([1.0, 0.0, 0.0]),
             };
             let uniform =
-                MediumUniform::with(&[medium; 3], &[calibration; 3], boundary, model, least_distance, 1.0);
+                Dipole { media: [medium; 3], model, boundary, calibrated: [calibration; 3] }.uniform(least_distance, 1.0);
             (uniform, medium, boundary, number(case, "angle_deg"))
         });
         let media: Vec<_> = media.collect();

@@ -144,7 +144,7 @@ fn sweep(model: DipoleModel, media: usize, geometries: usize) {
         let channels = random.media();
         let millimetres = random.decades(-6.0, 6.0);
         let start = Instant::now();
-        let uniform = MediumUniform::of(&channels, model, LEAST_DISTANCE, millimetres);
+        let uniform = Dipole::of(channels, model).uniform(LEAST_DISTANCE, millimetres);
         longest = longest.max(start.elapsed().as_secs_f64());
         assert!(is_finite(&uniform), "{channels:?}, {millimetres} mm: {uniform:?}");
         // Straight to the virtual source.
