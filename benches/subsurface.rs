@@ -30,7 +30,7 @@ struct Setting {
 
 fn settings(quick: bool) -> Vec<Setting> {
     let adaptive = ScatteringMaps::default();
-    let uniform = ScatteringMaps { strategy: MapStrategy::Uniform, resolution: MapResolution::Texels(1200, 680), ..adaptive.clone() };
+    let uniform = ScatteringMaps { strategy: MapStrategy::Uniform, samples: 48, resolution: MapResolution::Texels(1200, 680), ..adaptive.clone() };
     let mut all = vec![
         Setting { name: "Uniform, as published", maps: uniform.clone() },
         Setting { name: "Adaptive, default", maps: adaptive.clone() },
@@ -43,7 +43,7 @@ fn settings(quick: bool) -> Vec<Setting> {
     }
     all.push(Setting { name: "Uniform", maps: ScatteringMaps { samples: 192, ..uniform.clone() } });
     all.push(Setting { name: "Uniform", maps: ScatteringMaps { resolution: MapResolution::Texels(300, 170), ..uniform } });
-    for samples in [12, 24, 96, 192] {
+    for samples in [24, 48, 96, 256] {
         all.push(Setting { name: "Adaptive", maps: ScatteringMaps { samples, ..adaptive.clone() } });
     }
     for (cameras, side) in [(4, 256), (8, 256), (16, 128), (16, 256), (16, 512)] {

@@ -46,7 +46,7 @@ impl MeshBuffers {
             .zip(&data.normals)
             .map(|(position, normal)| [position.to_array(), normal.to_array()])
             .collect();
-        let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE;
+        let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
         Self {
             vertices: buffer(gpu, "vertices", bytemuck::cast_slice(&vertices), usage),
             indices: buffer(gpu, "indices", bytemuck::cast_slice(&data.triangles), wgpu::BufferUsages::INDEX),
