@@ -45,6 +45,12 @@ impl Environment {
         Ok(Self { variables, _runtime_folder: runtime_folder })
     }
 
+    /// What programs inside see under this name.
+    pub fn value(&self, name: &str) -> Option<OsString> {
+        let own = self.variables().find(|(known, _)| *known == name).map(|(_, value)| value.clone());
+        own.or_else(|| std::env::var_os(name))
+    }
+
     pub fn variables(&self) -> impl Iterator<Item = (&'static str, &OsString)> {
         self.variables.iter().map(|(name, value)| (*name, value))
     }

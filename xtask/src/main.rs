@@ -8,6 +8,7 @@ mod assets;
 mod ci;
 mod demo;
 mod environment;
+mod gallery;
 mod process;
 mod setup;
 mod test;
@@ -42,6 +43,8 @@ enum Task {
     },
     /// Render the showcase scene to target/showcase.png
     Demo,
+    /// Render contact sheets of translucent scans to target/gallery/
+    Gallery(gallery::Arguments),
     /// All that a change has to pass: format, lints, licences, tests, docs, examples, scenes
     Ci,
     /// Make the assets that the project ships, or download others
@@ -64,6 +67,7 @@ fn run(task: Task) -> Result<()> {
         Task::Setup { ci } => setup::run(ci),
         Task::Test { arguments } => test::run(&arguments),
         Task::Demo => demo::run(),
+        Task::Gallery(arguments) => gallery::run(&arguments),
         Task::Ci => ci::run(),
         Task::Assets(arguments) => assets::run(&arguments),
     }
