@@ -23,7 +23,7 @@ use tyndall::{LightTexels, Picture, TyndallPlugins, render};
 const PROBES: usize = 160;
 
 /// Repetitions of each time; the least counts.
-const REPETITIONS: usize = 3;
+const REPETITIONS: usize = 2;
 
 struct Setting {
     name: &'static str,
