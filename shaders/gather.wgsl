@@ -10,8 +10,9 @@ const NONE = 0xffffffffu;
 struct Gathering {
     // Where the light's results begin.
     first: u32,
-    // Which set of samples this is, from 0.
-    pass_index: u32,
+    // What is there already counts so much, and what is found so much.
+    keep: f32,
+    gain: vec3f,
 }
 
 @group(0) @binding(0) var<uniform> maps: Maps;
@@ -64,6 +65,6 @@ fn gather(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gro
     }
     let now = sum.xyz / max(sum.w, 1e-20);
     let place = gathering.first + index;
-    let before = select(radiosity[place].xyz, vec3f(0.0), gathering.pass_index == 0u);
-    radiosity[place] = vec4f(mix(before, now, 1.0 / f32(gathering.pass_index + 1u)), 1.0);
+    let before = select(radiosity[place].xyz, vec3f(0.0), gathering.keep == 0.0);
+    radiosity[place] = vec4f(gathering.keep * before + gathering.gain * now, 1.0);
 }

@@ -2,7 +2,7 @@
 // the lit surface (see estimator). The radiance that leaves in the direction omega_o is T(eta, omega_o) M_o.
 //
 // reads  points (vertices of the refined mesh; all of them, or those on a list), the light G-buffer
-// writes one vec4f a point: mean over all sets of samples so far of M_o for the light's irradiance (or per unit of it)
+// writes one vec4f a point: M_o, mean over all sets of samples so far, per unit of a light's irradiance or of all lights together
 
 #import estimator
 #import listing
@@ -26,8 +26,7 @@ fn at_points(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) 
     let normal = vec3f(vertices[at + 3u], vertices[at + 4u], vertices[at + 5u]);
     let x_o = (estimator.light_from_mesh * vec4f(position, 1.0)).xyz;
     let n_o = normalize((estimator.light_from_mesh_normal * vec4f(normal, 0.0)).xyz);
-    let now = estimator.irradiance * scattered(medium, x_o, n_o, index);
     let place = estimator.first + index;
-    let before = select(radiosity[place].xyz, vec3f(0.0), estimator.pass_index == 0u);
-    radiosity[place] = vec4f(mix(before, now, 1.0 / f32(estimator.pass_index + 1u)), 1.0);
+    let before = select(radiosity[place].xyz, vec3f(0.0), estimator.keep == 0.0);
+    radiosity[place] = vec4f(estimator.keep * before + estimator.gain * scattered(medium, x_o, n_o, index), 1.0);
 }

@@ -230,3 +230,29 @@ fn a_highlight_is_added_as_blinn_and_phong_say() {
     }
     assert!(brightest > 0.5, "{brightest}");
 }
+
+/// So many lights that what each sends out cannot be kept apart: they share one layer, with the same result.
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn very_many_lights_share_a_layer_and_add_up_all_the_same() {
+    let mut studio = Studio::new();
+    let scene = |lights: &str| {
+        format!(
+            "(entities: {{ {lights} \"ball\": ( Mesh: Sphere(subdivisions: 5),
+                Subsurface: (material: Custom(sigma_a: (0.1, 0.1, 0.1), sigma_s: (5.0, 5.0, 5.0))), ScatteringMaps: (samples: 8, progressive: false) ) }})"
+        )
+    };
+    let light = |name: usize, irradiance: f32| {
+        format!(
+            "\"light {name}\": ( DirectionalLight: (direction: (0.3, -1.0, -1.0), irradiance: ({irradiance:?}, {irradiance:?}, 0.0)) ),"
+        )
+    };
+    let one = studio.radiance(&scene(&light(0, 4.0)), 32, 32);
+    let points = studio.report().gpu_bytes["scattered_radiosity"] / 16;
+    let count = (64 << 20) / (16 * points as usize) + 1;
+    let lights: String = (0..count).map(|index| light(index, 4.0 / count as f32)).collect();
+    let many = studio.radiance(&scene(&lights), 32, 32);
+    assert_eq!(studio.report().gpu_bytes["scattered_radiosity"] / 16, points, "one layer");
+    let off = difference(&one, &many);
+    assert!(off < 1e-3, "{count} lights are off by {off}");
+}

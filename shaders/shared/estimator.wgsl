@@ -29,8 +29,9 @@ struct Estimator {
     least_mu: f32,
     // The greatest radius of a disc.
     radius: f32,
-    // The result is the irradiance times this: (1, 1, 1) where lights are kept apart.
-    irradiance: vec3f,
+    // What is there already counts so much, and what is found so much.
+    keep: f32,
+    gain: vec3f,
 }
 
 // The point of the lit surface at a place across the light, as (normal, height); the normal is 0 where no light arrives.

@@ -65,7 +65,10 @@ pub(crate) fn run(
     let mut held = 0;
     for (entity, points, views, layers, mut radiosity) in &mut bodies {
         let irradiance = |light: Entity| lights.get(light).map_or(Vec3::ZERO, |light| light.irradiance);
-        let irradiances: Vec<Vec3> = views.0.iter().map(|view| irradiance(view.light)).collect();
+        let irradiances: Vec<Vec3> = match layers.is_shared {
+            true => vec![Vec3::ONE],
+            false => views.0.iter().map(|view| irradiance(view.light)).collect(),
+        };
         let made = (layers.version, irradiances);
         let size = 16 * u64::from(points.count);
         held += size;

@@ -14,13 +14,14 @@ use super::medium::{Dipole, LEAST_DISTANCE, MediumUniform};
 use super::scattering_gbuffer::{self, CameraMaps, TexelChooser};
 use super::surface_points::SurfacePoints;
 use super::upload::MeshBuffers;
-use crate::components::{DipoleModel, Material, ScatteringMaps, Subsurface};
+use crate::components::{DipoleModel, DirectionalLight, Material, ScatteringMaps, Subsurface};
 use crate::gpu::{Gpu, GpuError, PassTimer, storage};
 use crate::loading::LoadedMesh;
 use crate::render::Failure;
 use crate::report::Report;
 use bevy_ecs::prelude::*;
-use job::Job;
+use glam::Vec3;
+use job::{Destination, Job};
 pub(crate) use job::{EstimatorUniform, GatheringUniform};
 pub(crate) use kernels::{Scatterer, listing_module, sampling_module};
 
@@ -33,6 +34,8 @@ pub(crate) struct ScatteredRadiosity {
     made: Vec<(Recipe, u32)>,
     /// The model, and what it was made from.
     dipole: (Material, DipoleModel, Dipole),
+    /// Whether all lights share one layer, in which their irradiance is already.
+    pub is_shared: bool,
     /// Counts up whenever the layers change.
     pub version: u64,
 }
@@ -45,7 +48,12 @@ struct Recipe {
     maps: ScatteringMaps,
     cameras: Option<scattering_gbuffer::Recipe>,
     medium: MediumUniform,
+    /// Of the light, where all lights share a layer.
+    irradiance: Option<Vec3>,
 }
+
+/// Bytes of the layers of a mesh, at most. Beyond that the lights share one, and a change of any light's colour computes all anew.
+const BUDGET: u64 = 64 << 20;
 
 /// How far the light that leaves translucent meshes is refined while nothing changes: each further set of samples, with cameras elsewhere,
 /// is averaged with those before. Meshes with `progressive: false` have one set.
@@ -81,19 +89,23 @@ type Bodies<'w, 's> = Query<
 pub(crate) fn run(
     mut commands: Commands,
     (gpu, refinement): (Res<Gpu>, Res<Refinement>),
+    lights: Query<&DirectionalLight>,
     mut bodies: Bodies,
     mut tools: (ResMut<Scatterer>, ResMut<Gbuffer>, ResMut<TexelChooser>),
     mut timer: Option<ResMut<PassTimer>>,
     (mut report, mut failure): (ResMut<Report>, ResMut<Failure>),
 ) {
+    let irradiance = |light: Entity| lights.get(light).map_or(Vec3::ZERO, |light| light.irradiance);
     let mut held = 0;
     for (entity, body, subsurface, maps, (points, mesh), views, cameras, mut radiosity) in &mut bodies {
-        let size = 16 * u64::from(points.count) * views.0.len().max(1) as u64;
+        let layer = 16 * u64::from(points.count);
+        let is_shared = layer * views.0.len() as u64 > BUDGET;
+        let size = if is_shared { layer } else { layer * views.0.len().max(1) as u64 };
         held += size;
         let mut new = None;
         let kept = match radiosity.as_deref_mut() {
-            Some(kept) if kept.layers.size() == size => kept,
-            _ => match ScatteredRadiosity::new(&gpu, size, subsurface) {
+            Some(kept) if kept.layers.size() == size && kept.is_shared == is_shared => kept,
+            _ => match ScatteredRadiosity::new(&gpu, size, is_shared, subsurface) {
                 Some(radiosity) => new.insert(radiosity),
                 None => continue,
             },
@@ -101,8 +113,15 @@ pub(crate) fn run(
         kept.keep_dipole(subsurface);
         let medium = kept.dipole.2.uniform(LEAST_DISTANCE, body.millimetres);
         let job = Job { gpu: &gpu, body, maps, points, mesh, medium: &medium, model: subsurface.model };
-        let result =
-            kept.refine(&job, views, cameras, *refinement, &mut tools, timer.as_deref_mut(), &mut report);
+        let result = kept.refine(
+            &job,
+            views,
+            cameras,
+            (*refinement, &irradiance),
+            &mut tools,
+            timer.as_deref_mut(),
+            &mut report,
+        );
         failure.keep(result);
         if let Some(new) = new {
             commands.entity(entity).insert(new);
@@ -112,9 +131,15 @@ pub(crate) fn run(
 }
 
 impl ScatteredRadiosity {
-    fn new(gpu: &Gpu, size: u64, subsurface: &Subsurface) -> Option<Self> {
+    fn new(gpu: &Gpu, size: u64, is_shared: bool, subsurface: &Subsurface) -> Option<Self> {
         let dipole = (subsurface.material.clone(), subsurface.model, Dipole::new(subsurface)?);
-        Some(Self { layers: storage(gpu, "scattered_radiosity", size), made: Vec::new(), dipole, version: 0 })
+        Some(Self {
+            layers: storage(gpu, "scattered_radiosity", size),
+            made: Vec::new(),
+            dipole,
+            is_shared,
+            version: 0,
+        })
     }
 
     /// Derives the model anew if what it is made from has changed.
@@ -134,27 +159,32 @@ impl ScatteredRadiosity {
         job: &Job,
         views: &LightViews,
         cameras: Option<&CameraMaps>,
-        refinement: Refinement,
+        (refinement, irradiance): (Refinement, &dyn Fn(Entity) -> Vec3),
         tools: &mut (ResMut<Scatterer>, ResMut<Gbuffer>, ResMut<TexelChooser>),
         mut timer: Option<&mut PassTimer>,
         report: &mut Report,
     ) -> Result<(), GpuError> {
         self.made.truncate(views.0.len());
         let wanted = if job.maps.progressive { refinement.sets.max(1) } else { 1 };
+        let self_shared = self.is_shared;
         let recipe = |layer: usize| Recipe {
             view: views.0[layer].version,
             points: job.points.mesh.clone(),
             maps: job.maps.clone(),
             cameras: cameras.map(|maps| maps.recipe.clone()),
             medium: job.medium.clone(),
+            irradiance: self_shared.then(|| irradiance(views.0[layer].light)),
         };
         for _ in 0..refinement.per_update.max(1) {
-            // Layers start again together with what they are made from, so they can be at different sets.
-            let sets: Vec<u32> = (0..views.0.len())
+            // Layers start again with what they are made from, so they can be at different sets; lights that share one start together.
+            let mut sets: Vec<u32> = (0..views.0.len())
                 .map(|layer| {
                     self.made.get(layer).filter(|made| made.0 == recipe(layer)).map_or(0, |made| made.1)
                 })
                 .collect();
+            if self.is_shared && sets.contains(&0) {
+                sets.fill(0);
+            }
             let Some(set) = sets.iter().copied().min().filter(|set| *set < wanted) else { break };
             let turned = match cameras {
                 Some(maps) if set > 0 => Some(scattering_gbuffer::build(
@@ -171,7 +201,18 @@ impl ScatteredRadiosity {
             };
             let maps = turned.as_ref().or(cameras);
             for (layer, view) in views.0.iter().enumerate().filter(|(layer, _)| sets[*layer] == set) {
-                job.run(&mut tools.0, view, maps, (layer, set), &self.layers, timer.as_deref_mut(), report)?;
+                let share = 1.0 / (set + 1) as f32;
+                let to = match self.is_shared {
+                    false => Destination { layer, set, keep: 1.0 - share, gain: Vec3::splat(share) },
+                    // The first light of a set makes room for it.
+                    true => Destination {
+                        layer: 0,
+                        set,
+                        keep: if layer == 0 { 1.0 - share } else { 1.0 },
+                        gain: share * irradiance(view.light),
+                    },
+                };
+                job.run(&mut tools.0, view, maps, to, &self.layers, timer.as_deref_mut(), report)?;
                 let made = (recipe(layer), set + 1);
                 match self.made.get_mut(layer) {
                     Some(place) => *place = made,

@@ -7,6 +7,7 @@ use crate::components::{Projection, Subsurface};
 use crate::gpu::Gpu;
 use crate::loading::LoadedMesh;
 use crate::report::Report;
+use crate::scene::{Problem, Problems};
 use crate::view::{Picture, View};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -50,7 +51,7 @@ pub(crate) fn refine(
     gpu: Res<Gpu>,
     (view, picture): (Res<View>, Res<Picture>),
     meshes: Query<Refinable>,
-    mut report: ResMut<Report>,
+    (mut report, mut problems): (ResMut<Report>, ResMut<Problems>),
 ) {
     let mut held = 0;
     for (entity, mesh, buffers, body, subsurface, points) in &meshes {
@@ -62,6 +63,13 @@ pub(crate) fn refine(
             continue;
         }
         let Some(data) = &mesh.data else { continue };
+        let limits = gpu.device.limits();
+        let most_vertices =
+            limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) / MeshBuffers::VERTEX;
+        if data.positions.len() as u64 > most_vertices {
+            problems.0.push(too_many(data.positions.len(), most_vertices).on(entity, "Subsurface"));
+            continue;
+        }
         let most =
             if gpu.is_software() { most_points_in_software(data.positions.len()) } else { MOST_POINTS };
         let (refined, _) = data.refined(body.body_from_mesh.matrix3, spacing, most);
@@ -74,6 +82,11 @@ pub(crate) fn refine(
         commands.entity(entity).insert(points);
     }
     report.hold("surface points", held);
+}
+
+fn too_many(vertices: usize, most: u64) -> Problem {
+    let message = format!("{vertices} vertices are more than this adapter computes the light of: {most}");
+    Problem::error(message).help("simplify the mesh, split it into several entities, or set `Shading: Local`")
 }
 
 impl SurfacePoints {

@@ -62,7 +62,7 @@ impl MeshBuffers {
     }
 
     /// Bytes of a vertex.
-    const VERTEX: u64 = 24;
+    pub const VERTEX: u64 = 24;
 
     /// Bytes that both buffers hold.
     pub fn bytes(&self) -> u64 {

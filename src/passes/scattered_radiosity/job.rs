@@ -32,7 +32,8 @@ mirror! {
         core: f32,
         least_mu: f32,
         radius: f32,
-        irradiance: Vec3,
+        keep: f32,
+        gain: Vec3,
     }
 }
 
@@ -41,8 +42,22 @@ mirror! {
     "gather":
     pub(crate) struct GatheringUniform as "Gathering" {
         first: u32,
-        pass_index: u32,
+        keep: f32,
+        gain: Vec3,
     }
+}
+
+/// Where a set of samples goes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Destination {
+    /// The layer.
+    pub layer: usize,
+    /// Which set of samples it is, from 0.
+    pub set: u32,
+    /// How much what is there already counts.
+    pub keep: f32,
+    /// How much what is found counts.
+    pub gain: Vec3,
 }
 
 /// One mesh's part of the pass.
@@ -70,14 +85,14 @@ impl Job<'_> {
         scatterer: &mut Scatterer,
         view: &LightView,
         maps: Option<&CameraMaps>,
-        (layer, set): (usize, u32),
+        to: Destination,
         layers: &wgpu::Buffer,
         mut timer: Option<&mut PassTimer>,
         report: &mut Report,
     ) -> Result<(), GpuError> {
         let gpu = self.gpu;
-        let estimator = self.estimator(view, layer, set);
-        let disc = self.disc(&estimator, set);
+        let estimator = self.estimator(view, to);
+        let disc = self.disc(&estimator, to.set);
         let capacity = (disc.len() as u32).next_power_of_two();
         let variant = Variant {
             standard: self.model == DipoleModel::StandardDipole,
@@ -104,7 +119,7 @@ impl Job<'_> {
                 timer.as_deref_mut(),
                 report,
             )?;
-            self.gather(scatterer, maps, (layer, set), layers, &mut encoder, report)?;
+            self.gather(scatterer, maps, to, layers, &mut encoder, report)?;
         }
         common.extend([self.points.mesh.vertices.as_entire_binding(), layers.as_entire_binding()]);
         let (place, invocations) = match maps {
@@ -187,12 +202,13 @@ impl Job<'_> {
         &self,
         scatterer: &mut Scatterer,
         maps: &CameraMaps,
-        (layer, set): (usize, u32),
+        to: Destination,
         layers: &wgpu::Buffer,
         encoder: &mut wgpu::CommandEncoder,
         report: &mut Report,
     ) -> Result<(), GpuError> {
-        let gathering = GatheringUniform { first: layer as u32 * self.points.count, pass_index: set };
+        let gathering =
+            GatheringUniform { first: to.layer as u32 * self.points.count, keep: to.keep, gain: to.gain };
         let gathering = uniform_buffer(self.gpu, "gathering", &gathering);
         let resources = [
             maps.uniform.as_entire_binding(),
@@ -209,7 +225,7 @@ impl Job<'_> {
         Ok(())
     }
 
-    fn estimator(&self, view: &LightView, layer: usize, set: u32) -> EstimatorUniform {
+    fn estimator(&self, view: &LightView, to: Destination) -> EstimatorUniform {
         let view = &view.view;
         let light_from_mesh = view.view_from_body * self.body.body_from_mesh;
         let largest = self.of_scattering(self.medium.sigma_t_prime).fold(1e-30, f32::max);
@@ -224,18 +240,19 @@ impl Job<'_> {
             low: view.low.truncate().as_vec2(),
             inverse_texel: Vec2::splat(view.texels_per_length() as f32),
             samples,
-            pass_index: set,
+            pass_index: to.set,
             candidates: match self.maps.candidates {
                 Auto::Value(candidates) => candidates.clamp(samples, MOST_CANDIDATES),
                 Auto::Auto => samples,
             },
             points: self.points.count,
-            first: layer as u32 * self.points.count,
+            first: to.layer as u32 * self.points.count,
             core: (CORE / largest).clamp(1e-9, 1.0),
             least_mu: self.least_mu(),
             // No two points of a body are further apart.
             radius: radius.min(2.0),
-            irradiance: Vec3::ONE,
+            keep: to.keep,
+            gain: to.gain,
         }
     }
 
