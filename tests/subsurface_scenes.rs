@@ -236,6 +236,8 @@ fn a_highlight_is_added_as_blinn_and_phong_say() {
 #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn very_many_lights_share_a_layer_and_add_up_all_the_same() {
     let mut studio = Studio::new();
+    // As few as so many lights get.
+    studio.app.insert_resource(tyndall::LightTexels(64));
     let scene = |lights: &str| {
         format!(
             "(entities: {{ {lights} \"ball\": ( Mesh: Sphere(subdivisions: 5),
