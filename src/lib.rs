@@ -87,4 +87,5 @@ mod view;
 pub use app::{SceneTime, Stage, TyndallPlugins};
 pub use passes::light_gbuffer::LightTexels;
 pub use passes::scattered_radiosity::Refinement;
+pub use passes::scattering_gbuffer::AutomaticCamera;
 pub use view::Picture;
