@@ -48,12 +48,11 @@ fn settings(quick: bool) -> Vec<Setting> {
     for cameras in [4, 8] {
         all.push(Setting { name: "Uniform", maps: ScatteringMaps { cameras, ..uniform } });
     }
-    all.push(Setting { name: "Uniform", maps: ScatteringMaps { samples: 192, ..uniform } });
     all.push(Setting {
         name: "Uniform",
         maps: ScatteringMaps { resolution: MapResolution::Texels(300, 170), ..uniform },
     });
-    for samples in [24, 48, 96, 256] {
+    for samples in [24, 48, 256, 1024] {
         all.push(Setting { name: "Adaptive", maps: ScatteringMaps { samples, ..adaptive } });
     }
     for (cameras, side) in [(4, 256), (8, 256), (16, 128), (16, 256), (16, 512)] {

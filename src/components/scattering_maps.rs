@@ -8,7 +8,7 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 /// |---|---|---|---|---|
 /// | `strategy` | `Adaptive` or `Uniform` | – | – | `Adaptive` |
 /// | `cameras` | scattering cameras that the program spreads around the mesh | – | 0 to 64 | 16 |
-/// | `samples` | points of the light for each point of the surface and each light | – | 1 to 1,024 | 192 |
+/// | `samples` | points of the light for each point of the surface and each light | – | 1 to 1,024 | 128 |
 /// | `candidates` | `Auto`, or points of which the `samples` nearest are used | – | `samples` to 4,096 | `Auto` |
 /// | `resolution` | `Auto`, or `Texels(w, h)` of each camera's map | texels | 1 to 4,096 | `Auto` |
 /// | `radius` | `Auto`, or `Millimetres(r)` of the disc that samples lie in | mm | above 0 | `Auto` |
@@ -67,7 +67,7 @@ impl Default for ScatteringMaps {
         Self {
             strategy: MapStrategy::Adaptive,
             cameras: 16,
-            samples: 192,
+            samples: 128,
             candidates: Auto::Auto,
             resolution: MapResolution::Auto,
             radius: SampleRadius::Auto,
