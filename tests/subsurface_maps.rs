@@ -163,25 +163,34 @@ fn work(passes: &BTreeMap<&'static str, PassRecord>, pass: &str, unit: &str) -> 
 
 fn points_against_truth(subject: &mut Subject, probes: usize) {
     let truth = subject.truth(probes, 1024);
-    let one = truth.error(&subject.radiosity());
+    let usual = truth.error(&subject.radiosity());
+    // With few samples in the same light, so that what is off is noise and not what the light's texels round away.
+    subject.world().insert_resource(LightTexels(1024));
+    let few = ScatteringMaps { samples: 48, ..Default::default() };
+    let one = truth.error(&subject.with(few));
     subject.refine(16, 16);
     subject.frame();
     let many = truth.error(&subject.radiosity());
-    println!("one set {:.3} %, sixteen {:.3} %", 100.0 * one, 100.0 * many);
-    assert!(one < 0.02, "{one}");
+    println!(
+        "{:.3} %; of few samples {:.3} %, of sixteen sets {:.3} %",
+        100.0 * usual,
+        100.0 * one,
+        100.0 * many
+    );
+    assert!(usual < 0.02, "{usual}");
     assert!(many < one / 2.0, "{many} of sixteen sets, {one} of one");
 }
 
 #[test]
 #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn points_of_a_sphere_send_out_what_the_sum_over_its_lit_side_says() {
-    points_against_truth(&mut Subject::sphere(5), 100);
+    points_against_truth(&mut Subject::sphere(5), 48);
 }
 
 #[test]
 #[cfg_attr(not(all(tyndall_gpu, tyndall_data)), ignore = "needs a graphics adapter and TYNDALL_DATA")]
 fn points_of_a_bunny_send_out_what_the_sum_over_its_lit_side_says() {
-    points_against_truth(&mut Subject::bunny(), 100);
+    points_against_truth(&mut Subject::bunny(), 48);
 }
 
 #[test]
@@ -191,7 +200,7 @@ fn every_model_is_summed_rightly() {
     for model in [DipoleModel::StandardDipole, DipoleModel::DirectionalDipole] {
         let mesh = subject.mesh;
         subject.world().get_mut::<Subsurface>(mesh).unwrap().model = model;
-        let truth = subject.truth(60, 512);
+        let truth = subject.truth(40, 512);
         let error = truth.error(&subject.radiosity());
         println!("{model:?}: {:.3} %", 100.0 * error);
         assert!(error < 0.02, "{model:?}: {error}");
@@ -202,7 +211,7 @@ fn every_model_is_summed_rightly() {
 #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn maps_hold_what_the_sum_over_the_lit_side_says() {
     let mut subject = Subject::sphere(5);
-    let truth = subject.truth(60, 512);
+    let truth = subject.truth(40, 512);
     let error = truth.error(&subject.with(maps(16, 256)));
     println!("16 maps of 256 x 256: {:.3} %", 100.0 * error);
     assert!(error < 0.03, "{error}");
@@ -230,10 +239,10 @@ fn more_cameras_and_more_texels_change_the_mean_by_little() {
 #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn published_discs_converge_where_they_cover_the_kernel() {
     let mut subject = Subject::new("Sphere(subdivisions: 4)", &grey(0.1, 3.0, 0.0, 1.3), 1.0);
-    let truth = subject.truth(60, 512);
+    let truth = subject.truth(40, 512);
     let mut errors = Vec::new();
     for samples in [16, 64, 256, 1024] {
-        let uniform = ScatteringMaps { strategy: MapStrategy::Uniform, samples, ..maps(8, 64) };
+        let uniform = ScatteringMaps { strategy: MapStrategy::Uniform, samples, ..maps(4, 64) };
         let found = subject.with(uniform);
         errors.push(truth.mean_error(&found));
         println!(
@@ -242,8 +251,13 @@ fn published_discs_converge_where_they_cover_the_kernel() {
             100.0 * truth.error(&found)
         );
     }
+    subject.refine(4, 4);
+    let found = subject.with(ScatteringMaps { strategy: MapStrategy::Uniform, samples: 1024, ..maps(4, 64) });
+    let more = truth.mean_error(&found);
+    println!("four sets: mean {:+.3} %, relative RMSE {:.3} %", 100.0 * more, 100.0 * truth.error(&found));
     assert!(errors[3].abs() < 0.02, "{errors:?}");
-    assert!(errors[3].abs() < errors[0].abs(), "{errors:?}");
+    assert!(errors[3].abs() < errors[0].abs() / 10.0, "{errors:?}");
+    assert!(more.abs() < 0.005, "{more}");
 }
 
 #[test]
@@ -293,7 +307,7 @@ fn what_a_single_camera_does_not_see_is_evaluated_at_its_points() {
         let error = relative_rmse(&found, &direct);
         // Directly evaluated, with the same samples.
         let same = found.iter().zip(&direct).filter(|(a, b)| a.distance(**b) <= 1e-4 * b.length()).count();
-        // The darkest of either, which both have on the side away from the light.
+        // The least against direct evaluation, whose noise is large where hardly any light arrives.
         let least = found.iter().zip(&direct).map(|(a, b)| a.min_element() / b.min_element());
         let least = least.fold(f64::INFINITY, f64::min);
         println!("{name}: {unseen} unseen, {same} the same, off {:.3} %, least {least:.3}", 100.0 * error);
@@ -302,7 +316,8 @@ fn what_a_single_camera_does_not_see_is_evaluated_at_its_points() {
         assert!(least > 0.5, "{name}: {least}");
         if name == "one by hand" {
             let seen = |point: &ScatteredPoint| point.position.dot(by_hand.direction) < -0.3;
-            let dark = points.iter().zip(&found).filter(|(point, m_o)| seen(point) && m_o.min_element() <= 0.0);
+            let dark =
+                points.iter().zip(&found).filter(|(point, m_o)| seen(point) && m_o.min_element() <= 0.0);
             assert_eq!(dark.count(), 0);
         }
     }
@@ -321,19 +336,34 @@ fn a_camera_by_hand_is_one_more() {
 
 #[test]
 #[cfg_attr(not(all(tyndall_gpu, tyndall_data)), ignore = "needs a graphics adapter and TYNDALL_DATA")]
-fn hollows_that_no_camera_looks_into_are_not_dark() {
+fn hollows_that_no_camera_looks_into_are_not_dark_and_nothing_leaks_from_one_surface_to_another() {
     let mut subject = Subject::bunny();
-    let direct = subject.radiosity();
+    subject.refine(16, 16);
+    let direct = subject.with(ScatteringMaps::default());
+    subject.refine(1, 1);
     let mean = mean(&direct);
     subject.set(maps(4, 256));
     let unseen = work(&subject.frame(), "scattered_radiosity", "points no camera sees");
     let found = subject.radiosity();
-    let lit = |(_, direct): &(&DVec3, &DVec3)| direct.min_element() > 0.01 * mean;
-    let least = found.iter().zip(&direct).filter(lit).map(|(found, direct)| (found / direct).min_element());
-    let (least, error) = (least.fold(f64::INFINITY, f64::min), relative_rmse(&found, &direct));
-    println!("{unseen} of {} unseen, least {least:.3}, off {:.2} %", found.len(), 100.0 * error);
+    // Points that send out so much of the mean, by how much of that the maps say.
+    let ratios = |share: f64| {
+        let lit =
+            found.iter().zip(&direct).filter(move |(_, direct)| direct.element_sum() > 3.0 * share * mean);
+        let ratio = lit.map(|(found, direct)| found.element_sum() / direct.element_sum());
+        ratio.fold((f64::INFINITY, 0.0f64), |(least, most), ratio| (least.min(ratio), most.max(ratio)))
+    };
+    let (all, bright) = (ratios(0.01), ratios(0.1));
+    let error = relative_rmse(&found, &direct);
+    println!(
+        "{unseen} of {} unseen, {all:.3?}, bright {bright:.3?}, off {:.2} %",
+        found.len(),
+        100.0 * error
+    );
     assert!(unseen > 0);
-    assert!(least > 0.0, "{least}");
+    assert!(error < 0.02, "{error}");
+    assert!(all.0 > 0.0, "{all:?}");
+    // Noise alone makes a third; a texel of another surface can be off by any factor.
+    assert!(bright.0 > 0.65 && bright.1 < 1.5, "{bright:?}");
 }
 
 /// Boxes as OBJ, each by its half width and the heights of its bottom and top.
@@ -345,10 +375,14 @@ fn boxes(all: &[[f64; 3]]) -> String {
             let [x, y, z] = [side(0, -half, *half), side(1, *low, *high), side(2, -half, *half)];
             writeln!(text, "v {x:?} {y:?} {z:?}").unwrap();
         }
-        for (normal, face) in
-            [("1 0 0", [2, 4, 8, 6]), ("-1 0 0", [1, 5, 7, 3]), ("0 1 0", [3, 7, 8, 4]), ("0 -1 0", [1, 2, 6, 5])]
-                .into_iter()
-                .chain([("0 0 1", [5, 6, 8, 7]), ("0 0 -1", [1, 3, 4, 2])])
+        for (normal, face) in [
+            ("1 0 0", [2, 4, 8, 6]),
+            ("-1 0 0", [1, 5, 7, 3]),
+            ("0 1 0", [3, 7, 8, 4]),
+            ("0 -1 0", [1, 2, 6, 5]),
+        ]
+        .into_iter()
+        .chain([("0 0 1", [5, 6, 8, 7]), ("0 0 -1", [1, 3, 4, 2])])
         {
             let corners = face.map(|corner| format!("{}//-1", 8 * index + corner)).join(" ");
             writeln!(text, "vn {normal}\nf {corners}").unwrap();
@@ -374,7 +408,15 @@ fn a_slab_in_the_shadow_of_another_takes_nothing_from_its_texels() {
         let of: Vec<DVec3> = points
             .iter()
             .zip(radiosity)
-            .filter(|(point, _)| if lit { point.position.y > 0.15 } else { point.position.y < 0.05 })
+            .filter(|(point, _)| {
+                if lit {
+                    point.normal.y > 0.9
+                        && point.position.y > 0.15
+                        && point.position.abs().max_element() < 0.9
+                } else {
+                    point.position.y < 0.05
+                }
+            })
             .map(|(_, radiosity)| *radiosity)
             .collect();
         let greatest = of.iter().map(|radiosity| radiosity.max_element()).fold(0.0, f64::max);
@@ -384,12 +426,19 @@ fn a_slab_in_the_shadow_of_another_takes_nothing_from_its_texels() {
     for (name, strategy) in [("adaptive", MapStrategy::Adaptive), ("uniform", MapStrategy::Uniform)] {
         all.push((name, ScatteringMaps { strategy, ..maps(16, 256) }));
     }
+    let mut direct = None;
     for (name, maps) in all {
         let found = subject.with(maps);
         let (lit, (shadowed, most)) = (slab(true, &found).0, slab(false, &found));
         println!("{name}: lit {lit:.3e}, shadowed {shadowed:.3e}, at most {most:.3e}");
-        assert!(lit > 0.0);
-        assert!(shadowed < 0.01 * lit, "{name}: {shadowed} beside {lit}");
+        let direct = *direct.get_or_insert(lit);
+        // All points of a plane share a published disc, and its noise.
+        let tolerance = if name == "uniform" { 0.06 } else { 0.01 };
+        assert!((lit / direct - 1.0).abs() < tolerance, "{name}: {lit}, directly {direct}");
+        assert!(
+            shadowed < 1e-6 * lit && most < 1e-6 * lit,
+            "{name}: {shadowed}, at most {most}, beside {lit}"
+        );
     }
 }
 
@@ -434,7 +483,7 @@ fn results_are_the_same_every_time() {
         subject.points()
     };
     let few = ScatteringMaps { samples: 24, ..maps(6, 64) };
-    let uniform = ScatteringMaps { strategy: MapStrategy::Uniform, ..few.clone() };
+    let uniform = ScatteringMaps { strategy: MapStrategy::Uniform, ..few };
     for maps in [ScatteringMaps { samples: 24, ..Default::default() }, few, uniform] {
         assert!(run(&maps) == run(&maps), "{maps:?}");
     }
@@ -443,7 +492,11 @@ fn results_are_the_same_every_time() {
 /// What ran, by name, but the drawing of the picture itself.
 fn ran(passes: &BTreeMap<&'static str, PassRecord>) -> Vec<(&'static str, u64)> {
     let drawing = ["surface", "tonemap"];
-    passes.iter().filter(|(pass, _)| !drawing.contains(pass)).map(|(pass, record)| (*pass, record.runs)).collect()
+    passes
+        .iter()
+        .filter(|(pass, _)| !drawing.contains(pass))
+        .map(|(pass, record)| (*pass, record.runs))
+        .collect()
 }
 
 #[test]
@@ -494,7 +547,12 @@ fn cameras_are_children_of_the_mesh_while_maps_are_made() {
     subject.set(ScatteringMaps { samples: 4, ..Default::default() });
     subject.frame();
     assert_eq!(subject.cameras(), (0, 0));
-    subject.set(ScatteringMaps { strategy: MapStrategy::Uniform, cameras: 2, samples: 4, ..Default::default() });
+    subject.set(ScatteringMaps {
+        strategy: MapStrategy::Uniform,
+        cameras: 2,
+        samples: 4,
+        ..Default::default()
+    });
     subject.frame();
     assert_eq!(subject.cameras(), (2, 2));
     assert!(subject.studio.report().gpu_bytes.contains_key("scattering_gbuffer"));
