@@ -39,8 +39,8 @@ struct Seen {
     slope: vec2f,
     // How far a texel may lie off the point's tangent plane and still show the same surface.
     bias: f32,
-    // Cosine between the normal and the direction to the camera.
-    facing: f32,
+    // Its z is the cosine between the normal and the direction to the camera.
+    normal: vec3f,
 }
 
 fn seen_by(camera: MapCamera, point: Point) -> Seen {
@@ -50,10 +50,11 @@ fn seen_by(camera: MapCamera, point: Point) -> Seen {
     // A tangent plane is off by what the surface curves within a texel, the more the more it leans.
     let automatic = (1.0 + 2.0 * length(slope) * camera.inverse_texel) / camera.inverse_texel;
     let bias = select(maps.bias, automatic, maps.bias < 0.0);
-    return Seen((position.xy - camera.low) * camera.inverse_texel, position.z, slope, bias, normal.z);
+    return Seen((position.xy - camera.low) * camera.inverse_texel, position.z, slope, bias, normal);
 }
 
-// The height that a texel shows above the point's tangent plane; huge where it shows nothing.
+// The height that a texel shows above the point's tangent plane; huge where it shows nothing, or a surface that faces elsewhere, as
+// beyond an edge or on another side of something thin.
 fn above(seen: Seen, layer: u32, texel: vec2i) -> f32 {
     let size = vec2i(textureDimensions(map_gbuffer));
     if any(texel < vec2i(0)) || any(texel >= size) {
@@ -61,14 +62,14 @@ fn above(seen: Seen, layer: u32, texel: vec2i) -> f32 {
     }
     let shown = textureLoad(map_gbuffer, vec2i(texel.x, size.y - 1 - texel.y), layer, 0);
     let plane = seen.height + dot(seen.slope, vec2f(texel) + 0.5 - seen.place);
-    return select(1e9, shown.w - plane, any(shown.xyz != vec3f(0.0)));
+    return select(1e9, shown.w - plane, dot(shown.xyz, seen.normal) > 0.5 * length(shown.xyz));
 }
 
 // How well a camera sees a point: the share of the nine texels around it that show its surface (percentage-closer filtering; Reeves,
 // Salesin, Cook 1987), times the square of the cosine, so that cameras in front count for more. Where the nearest texels show something
 // else, it does not see the point.
 fn visibility(seen: Seen, layer: u32) -> f32 {
-    if seen.facing <= 0.05 {
+    if seen.normal.z <= 0.05 {
         return 0.0;
     }
     let middle = vec2i(floor(seen.place));
@@ -77,5 +78,5 @@ fn visibility(seen: Seen, layer: u32) -> f32 {
         let offset = vec2i(i % 3 - 1, i / 3 - 1);
         count += select(0.0, 1.0, abs(above(seen, layer, middle + offset)) <= seen.bias);
     }
-    return count / 9.0 * seen.facing * seen.facing * select(0.0, 1.0, abs(above(seen, layer, middle)) <= seen.bias);
+    return count / 9.0 * seen.normal.z * seen.normal.z * select(0.0, 1.0, abs(above(seen, layer, middle)) <= seen.bias);
 }
