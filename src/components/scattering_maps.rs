@@ -22,13 +22,16 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 ///
 /// | field | `Adaptive` | `Uniform` |
 /// |---|---|---|
-/// | `cameras` | as many, with `resolution: Texels(w, h)`; with `Auto` only where maps take fewer texels than the surface has points | as many |
-/// | `samples` | at most as many | just as many |
+/// | `cameras` | as many, with `resolution: Texels(w, h)` or beside cameras by hand; otherwise no maps are made | as many |
+/// | `samples` | as many | as many |
 /// | `candidates` | without effect | `Auto` takes `samples`, so all are used |
-/// | `resolution` | `Auto`: fine enough for the mean free path and the picture; the points of the surface itself where those are fewer | `Auto`: the size of the picture |
+/// | `resolution` | `Auto`: the points of the surface itself, refined as the mean free path and the picture call for | `Auto`: the size of the picture |
 /// | `radius` | `Auto`: as far as light gets in the medium | the same |
 /// | `bias` | `Auto`: from the texels' size | the same |
 /// | `progressive` | the samples differ from picture to picture | the same |
+///
+/// Where the mean free path is much shorter than the way that light gets in the medium, few of *Uniform*'s samples fall where the light
+/// is, and the mesh comes out too dark and patchy; a smaller `radius` helps with light from the front and cuts off that from behind.
 ///
 /// [`ScatteringCamera`](super::ScatteringCamera) entities add views by hand to either, whatever `cameras` says. Every
 /// [`Subsurface`](super::Subsurface) has a `ScatteringMaps`, by default if none is written.

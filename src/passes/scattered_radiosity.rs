@@ -164,6 +164,10 @@ impl ScatteredRadiosity {
         mut timer: Option<&mut PassTimer>,
         report: &mut Report,
     ) -> Result<(), GpuError> {
+        if self.is_shared && self.made.len() != views.0.len() {
+            // What a light that is gone sent out cannot be taken back.
+            self.made.clear();
+        }
         self.made.truncate(views.0.len());
         let wanted = if job.maps.progressive { refinement.sets.max(1) } else { 1 };
         let self_shared = self.is_shared;

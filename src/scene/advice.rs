@@ -97,11 +97,15 @@ fn scattering(document: &SceneDocument, entity: &SceneEntity) -> Vec<Problem> {
             message,
             "write one beside it: `Subsurface: (material: Preset(\"marble\"))`".into(),
         ));
-    } else if maps.cameras == 0 && needs_cameras(maps) && !has_camera(document, name) {
-        let message =
-            format!("no scattering camera looks at `{name}`: no light that leaves it will be computed");
-        let help = "raise `cameras`, or add views by hand: `\"view\": ( ScatteringCamera: (target: \"…\") )`";
-        notes.push(note("ScatteringMaps.cameras", message, help.into()).label("none"));
+    } else if maps.cameras != ScatteringMaps::default().cameras
+        && !makes_maps(maps)
+        && !has_camera(document, name)
+    {
+        let message = format!(
+            "`cameras` has no effect on `{name}`: its light is computed at the points of the surface"
+        );
+        let help = "leave it out, or ask for maps: `resolution: Texels(512, 512)`";
+        notes.push(note("ScatteringMaps.cameras", message, help.into()));
     }
     if maps.strategy == MapStrategy::Adaptive && maps.candidates != Auto::Auto {
         let message = format!("`candidates` has no effect on `{name}`, whose `strategy` is `Adaptive`");
@@ -111,7 +115,7 @@ fn scattering(document: &SceneDocument, entity: &SceneEntity) -> Vec<Problem> {
     notes
 }
 
-fn needs_cameras(maps: &ScatteringMaps) -> bool {
+fn makes_maps(maps: &ScatteringMaps) -> bool {
     maps.strategy == MapStrategy::Uniform || maps.resolution != MapResolution::Auto
 }
 
