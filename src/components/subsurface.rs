@@ -151,6 +151,12 @@ fn eta() -> f32 {
 /// | `StandardDipole` | Jensen et al. 2001, eq. 4: two point sources | the direction of the light, which plays no part; the light near its entry |
 /// | `DirectionalDipole` | Frisvad, Hachisuka & Kjeldsen 2014: a ray source and its image | the total: a fifth to a third too bright where little is absorbed, more where much is |
 /// | `CalibratedDipole` | the same, times the number for each colour that gives a half space its exact total | not published; the surface is still taken to be flat |
+///
+/// Two deviations from what is published. The distance to the real ray source is at least 1/12 of a mean free path, because where a lit
+/// surface meets one that faces away from the light the model shines without bound; with `eta` 1.3 and more that changes nothing on a
+/// plane, with `eta` 1 it darkens light that arrives beyond 75 degrees (3 % at 80). And what the standard dipole sends out is divided by the
+/// diffuse transmittance of the surface, so that R_d is what leaves a half space in all directions together. Light that crosses the body
+/// without scattering once (S_dE of the directional dipole) is left out; it is negligible beyond ten mean free paths.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Default, PartialEq)]
 pub enum DipoleModel {
