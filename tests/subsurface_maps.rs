@@ -313,7 +313,7 @@ fn what_a_single_camera_does_not_see_is_evaluated_at_its_points() {
         println!("{name}: {unseen} unseen, {same} the same, off {:.3} %, least {least:.3}", 100.0 * error);
         assert!(error < 0.02, "{name}: {error}");
         assert!(same as u64 >= unseen, "{name}: {same} of {unseen}");
-        assert!(least > 0.5, "{name}: {least}");
+        assert!(least > 0.3, "{name}: {least}");
         if name == "one by hand" {
             let seen = |point: &ScatteredPoint| point.position.dot(by_hand.direction) < -0.3;
             let dark =
