@@ -17,6 +17,21 @@ fn noop(options: &GpuOptions) -> Gpu {
     pollster::block_on(Gpu::from_adapter(&adapter, options)).unwrap()
 }
 
+/// A pipeline for each use: opaque and translucent surfaces; points, texels and unseen points.
+const EXPECTED: [&str; 11] = [
+    "gbuffer",
+    "scattering_texels",
+    "scattered_radiosity",
+    "scattered_texels",
+    "gather",
+    "scattered_radiosity",
+    "combine",
+    "surface",
+    "surface",
+    "raycast",
+    "tonemap",
+];
+
 #[test]
 fn every_pass_has_valid_pipelines_and_bindings() {
     let folder = tempfile::tempdir().unwrap();
@@ -25,6 +40,8 @@ fn every_pass_has_valid_pipelines_and_bindings() {
     let volume = "Volume: Raw(path: \"v.raw\", size: (4, 4, 4))";
     let text = format!(
         "(entities: {{ \"sun\": ( DirectionalLight: () ), \"ball\": ( Mesh: Sphere() ),
+            \"wax\": ( Mesh: Sphere(), Subsurface: () ),
+            \"published\": ( Mesh: Sphere(), Subsurface: (model: StandardDipole), ScatteringMaps: (strategy: Uniform) ),
             \"a\": ( {volume} ), \"b\": ( {volume}, VolumeLighting: Gradient() ),
             \"c\": ( Volume: Raw(path: \"v.raw\", size: (4, 4, 1), format: F32) ) }})"
     );
@@ -36,7 +53,7 @@ fn every_pass_has_valid_pipelines_and_bindings() {
         let document = render::load_scene(&mut app, &scene, &[]);
         assert!(!document.has_errors(), "{:#?}", document.problems);
         app.update();
-        assert_eq!(app.world().resource::<Report>().pipelines, ["surface", "raycast", "tonemap"]);
+        assert_eq!(app.world().resource::<Report>().pipelines, EXPECTED);
         render::render(&mut app).unwrap();
     }
 }

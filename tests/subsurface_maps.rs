@@ -287,6 +287,10 @@ fn only_texels_that_points_want_are_evaluated_and_cameras_all_around_see_every_p
 #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn what_a_single_camera_does_not_see_is_evaluated_at_its_points() {
     let mut subject = Subject::sphere(4);
+    // So many that the dimmest points are not all noise.
+    let many = |maps: ScatteringMaps| ScatteringMaps { samples: 192, ..maps };
+    subject.set(many(ScatteringMaps::default()));
+    subject.frame();
     let direct = subject.radiosity();
     let points = subject.points();
     let half = points.len() as u64 / 2;
@@ -295,9 +299,9 @@ fn what_a_single_camera_does_not_see_is_evaluated_at_its_points() {
         match name {
             "one by hand" => {
                 subject.world().spawn(by_hand.clone());
-                subject.set(ScatteringMaps { cameras: 0, ..maps(0, 256) });
+                subject.set(many(maps(0, 256)));
             }
-            _ => subject.set(maps(1, 256)),
+            _ => subject.set(many(maps(1, 256))),
         }
         let passes = subject.frame();
         assert_eq!(subject.cameras().0, 1);
@@ -313,7 +317,7 @@ fn what_a_single_camera_does_not_see_is_evaluated_at_its_points() {
         println!("{name}: {unseen} unseen, {same} the same, off {:.3} %, least {least:.3}", 100.0 * error);
         assert!(error < 0.02, "{name}: {error}");
         assert!(same as u64 >= unseen, "{name}: {same} of {unseen}");
-        assert!(least > 0.3, "{name}: {least}");
+        assert!(least > 0.5, "{name}: {least}");
         if name == "one by hand" {
             let seen = |point: &ScatteredPoint| point.position.dot(by_hand.direction) < -0.3;
             let dark =

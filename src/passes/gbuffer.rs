@@ -112,22 +112,25 @@ pub(crate) type Seen<'a> = (&'a MeshBuffers, DAffine3, bool);
 impl Gbuffer {
     /// The pipeline, made when it is first asked for.
     fn pipeline(&mut self, gpu: &Gpu, report: &mut Report) -> Result<&Draw, GpuError> {
-        if self.draw.is_none() {
-            report.pipelines.push("gbuffer");
-            self.draw = Some(Draw::new(
-                gpu,
-                &DrawDescriptor {
-                    name: "gbuffer",
-                    generated: &[],
-                    entry_points: ("transform", "record"),
-                    bindings: &[binding::UNIFORM_EACH],
-                    vertex_buffers: &[&wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3]],
-                    format: FORMAT,
-                    depth: true,
-                },
-            )?);
-        }
-        self.draw.as_ref().ok_or(GpuError::Missing)
+        let draw = match self.draw.take() {
+            Some(draw) => draw,
+            None => {
+                report.pipelines.push("gbuffer");
+                Draw::new(
+                    gpu,
+                    &DrawDescriptor {
+                        name: "gbuffer",
+                        generated: &[],
+                        entry_points: ("transform", "record"),
+                        bindings: &[binding::UNIFORM_EACH],
+                        vertex_buffers: &[&wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3]],
+                        format: FORMAT,
+                        depth: true,
+                    },
+                )?
+            }
+        };
+        Ok(self.draw.insert(draw))
     }
 
     /// Draws meshes as a view sees them from the height `top`, and answers how many triangles that were.

@@ -50,11 +50,14 @@ pub(super) fn choose(
     timer: Option<&mut PassTimer>,
     report: &mut Report,
 ) -> Result<CameraMaps, GpuError> {
-    if chooser.kernels.is_none() {
-        chooser.kernels = Some([kernel(gpu, "choose")?, kernel(gpu, "list")?, kernel(gpu, "plan")?]);
-        report.pipelines.push("scattering_texels");
-    }
-    let Some([choose, list, plan]) = &chooser.kernels else { return Err(GpuError::Missing) };
+    let kernels = match chooser.kernels.take() {
+        Some(kernels) => kernels,
+        None => {
+            report.pipelines.push("scattering_texels");
+            [kernel(gpu, "choose")?, kernel(gpu, "list")?, kernel(gpu, "plan")?]
+        }
+    };
+    let [choose, list, plan] = chooser.kernels.insert(kernels);
     let texels = recipe.size.element_product() * views.len() as u32;
     let points = recipe.count;
     let uniform = MapsUniform {
