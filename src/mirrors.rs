@@ -59,6 +59,9 @@ pub fn all() -> Vec<Mirror> {
         passes::scattered_radiosity::EstimatorUniform::mirror(),
         passes::combine::CombinationUniform::mirror(),
         passes::surface::MeshInstance::mirror(),
+        passes::light_volume::ExtinctionUniform::mirror(),
+        passes::light_volume::sweep::ColumnsUniform::mirror(),
+        passes::light_volume::sweep::SweepUniform::mirror(),
         passes::raycast::VolumeInstance::mirror(),
         passes::tonemap::DisplayUniform::mirror(),
     ]
@@ -69,8 +72,12 @@ pub fn all() -> Vec<Mirror> {
 pub fn generated_modules() -> Vec<(&'static str, String)> {
     use crate::gpu::Filtering::{Sampler, Shader};
     vec![
-        ("volumes", passes::raycast::volumes_module(&[Sampler, Shader], true)),
+        (
+            "volumes",
+            passes::raycast::volumes_module(&[Sampler, Shader], true, passes::raycast::FIXED_BINDINGS),
+        ),
         view::lights_module(4),
+        passes::light_volume::lookup::light_volumes_module(2, Sampler, passes::raycast::FIXED_BINDINGS + 2),
         passes::scattered_radiosity::sampling_module(&Default::default(), 5),
         passes::scattered_radiosity::listing_module(false),
     ]

@@ -22,6 +22,7 @@ sources! {
     "fullscreen" => "shared/fullscreen.wgsl",
     "gather" => "gather.wgsl",
     "gbuffer" => "gbuffer.wgsl",
+    "light_volume" => "light_volume.wgsl",
     "maps" => "shared/maps.wgsl",
     "phase" => "shared/phase.wgsl",
     "raycast" => "raycast.wgsl",
@@ -31,6 +32,7 @@ sources! {
     "scattered_texels" => "scattered_texels.wgsl",
     "scattering_texels" => "scattering_texels.wgsl",
     "surface" => "surface.wgsl",
+    "sweep" => "shared/sweep.wgsl",
     "tonemap" => "tonemap.wgsl",
 }
 

@@ -5,9 +5,10 @@
 //! since each needs a texture binding of its own: their number is limited by what the adapter can bind at once.
 
 use super::classify::{Classified, classify};
+use super::light_volume::{LightVolume, LightVolumes, lighting_in_force, lookup, scene_from_texture};
 use super::surface::Surface;
 use super::upload::{SENTINEL_THRESHOLD, VolumeTexture, VolumeUploadPlugin};
-use crate::components::{Placement, RayCast as RayCastSettings, SceneSettings, VolumeLighting};
+use crate::components::{Placement, RayCast as RayCastSettings, SceneSettings, Shading, VolumeLighting};
 use crate::gpu::{
     Draw, DrawDescriptor, Filtering, Gpu, GpuError, PassTimer, Target, binding, texture_of, uniform_array,
 };
@@ -19,7 +20,7 @@ use crate::view::{FrameBuffers, Picture, View, far_background, lights_module};
 use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
-use glam::{DAffine3, DVec3, Mat4, UVec2, UVec3, Vec3, Vec4};
+use glam::{DVec3, Mat4, UVec2, UVec3, Vec3, Vec4};
 use std::fmt::Write;
 
 /// Casts rays through volumes.
@@ -58,6 +59,8 @@ struct Variant {
     light_capacity: usize,
     /// Whether any volume is lit by its gradient, which costs more than the rest together.
     any_lit: bool,
+    /// Light volumes of all volumes together.
+    light_volumes: usize,
 }
 
 /// The lookup tables and brick distances of all volumes.
@@ -73,7 +76,7 @@ struct Tables {
 }
 
 /// Bricks in a row of their texture.
-const BRICK_ROW: u32 = 2048;
+pub(crate) const BRICK_ROW: u32 = 2048;
 
 mirror! {
     /// Mirror of `VolumeInstance` in `shaders/raycast.wgsl`.
@@ -96,6 +99,9 @@ mirror! {
         shininess: f32,
         sentinel: f32,
         reach: f32,
+        g: f32,
+        emission: f32,
+        first_sweep: u32,
     }
 }
 
@@ -105,7 +111,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 const OTHER_TEXTURES: u32 = 3;
 
 /// Bindings of the shader in front of the volume textures.
-const FIXED_BINDINGS: u32 = 7;
+pub(crate) const FIXED_BINDINGS: usize = 7;
 
 type VolumeData<'a> = (
     Entity,
@@ -115,6 +121,8 @@ type VolumeData<'a> = (
     &'a Placement,
     &'a VolumeLighting,
     &'a RayCastSettings,
+    Option<&'a Shading>,
+    Option<&'a LightVolumes>,
 );
 type Volumes<'w, 's> = Query<
     'w,
@@ -127,6 +135,8 @@ type Volumes<'w, 's> = Query<
         &'static Placement,
         &'static VolumeLighting,
         &'static RayCastSettings,
+        Option<&'static Shading>,
+        Option<&'static LightVolumes>,
     ),
 >;
 
@@ -147,13 +157,17 @@ fn run(
     let mut volumes: Vec<_> = volumes.iter().collect();
     volumes.sort_by_key(|volume| volume.0);
     let limit = gpu.device.limits().max_sampled_textures_per_shader_stage - OTHER_TEXTURES;
-    if volumes.len() > limit as usize {
-        let message =
-            format!("{} volumes are in the scene; this adapter can show {limit} at once", volumes.len());
+    let light_volumes = light_volumes(&volumes).len();
+    if volumes.len() + light_volumes > limit as usize {
+        let mut message = format!("{} volumes are in the scene", volumes.len());
+        if light_volumes > 0 {
+            message += &format!(", with {light_volumes} light volumes between them");
+        }
+        message += &format!("; this adapter can show {limit} at once");
         problems.0.push(
             Problem::error(message)
-                .help("merge volumes, or leave some out")
-                .on(volumes[limit as usize].0, "Volume"),
+                .help("merge volumes, or leave some out; each volume that scatters has a light volume for each light")
+                .on(volumes[volumes.len() - 1].0, "Volume"),
         );
         return;
     }
@@ -180,8 +194,9 @@ fn prepare(
     report: &mut Report,
 ) -> Result<(), GpuError> {
     let filtering = volumes.iter().map(|volume| volume.3.format.filtering).collect();
-    let any_lit = volumes.iter().any(|volume| matches!(volume.5, VolumeLighting::Gradient { .. }));
-    let variant = Variant { filtering, light_capacity, any_lit };
+    let any_lit = volumes.iter().any(|volume| !matches!(volume.5, VolumeLighting::EmissionAbsorption));
+    let light_volumes = light_volumes(volumes).len();
+    let variant = Variant { filtering, light_capacity, any_lit, light_volumes };
     if caster.draw.as_ref().is_none_or(|(made_for, _)| *made_for != variant) {
         caster.draw = Some((variant.clone(), make(gpu, &variant)?));
         report.pipelines.push("raycast");
@@ -226,14 +241,17 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
         .filtering
         .iter()
         .map(|filtering| binding::texture(wgpu::TextureViewDimension::D3, *filtering == Filtering::Sampler));
-    let bindings: Vec<_> = fixed.into_iter().chain(textures).collect();
+    let light_volumes = lookup::bindings(variant.light_volumes, lookup::filtering(gpu));
+    let bindings: Vec<_> = fixed.into_iter().chain(textures).chain(light_volumes).collect();
+    let first = FIXED_BINDINGS + variant.filtering.len();
     Draw::new(
         gpu,
         &DrawDescriptor {
             name: "raycast",
             generated: &[
-                ("volumes", volumes_module(&variant.filtering, variant.any_lit)),
+                ("volumes", volumes_module(&variant.filtering, variant.any_lit, FIXED_BINDINGS)),
                 lights_module(variant.light_capacity),
+                lookup::light_volumes_module(variant.light_volumes, lookup::filtering(gpu), first),
             ],
             entry_points: ("cover", "march"),
             bindings: &bindings,
@@ -245,7 +263,7 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
 }
 
 /// The WGSL module `volumes`: one texture binding a volume, and `texel_at(volume, place)` that interpolates in it.
-pub(crate) fn volumes_module(filtering: &[Filtering], any_lit: bool) -> String {
+pub(crate) fn volumes_module(filtering: &[Filtering], any_lit: bool, first_binding: usize) -> String {
     let brick = BrickRanges::BRICK;
     let count = filtering.len();
     let mut text = format!(
@@ -253,7 +271,7 @@ pub(crate) fn volumes_module(filtering: &[Filtering], any_lit: bool) -> String {
     );
     let mut cases = String::new();
     for (index, filtering) in filtering.iter().enumerate() {
-        let binding = FIXED_BINDINGS as usize + index;
+        let binding = first_binding + index;
         let value = match filtering {
             Filtering::Sampler => format!("textureSampleLevel(volume_{index}, linear_sampler, place, 0.0).r"),
             Filtering::Shader => {
@@ -329,25 +347,39 @@ fn instances(
     caster: &RayCaster,
 ) -> Vec<VolumeInstance> {
     let starts = caster.tables.as_ref().map(|tables| tables.starts.as_slice()).unwrap_or_default();
-    volumes.iter().zip(starts).map(|(volume, start)| instance(view, settings, volume, *start)).collect()
+    let mut first_sweep = 0;
+    let mut all = Vec::new();
+    for (volume, start) in volumes.iter().zip(starts) {
+        all.push(instance(view, settings, volume, *start, first_sweep));
+        first_sweep += volume.8.map_or(0, |own| own.0.len() as u32);
+    }
+    all
 }
 
-fn instance(view: &View, settings: &SceneSettings, volume: &VolumeData, bricks_start: u32) -> VolumeInstance {
-    let (_, loaded, classified, texture, placement, lighting, ray_cast) = volume;
-    let extent = 2.0 * loaded.half_extent().as_dvec3() / f64::from(settings.millimetres_per_unit);
-    let entity_from_texture = DAffine3::from_scale(extent) * DAffine3::from_translation(DVec3::splat(-0.5));
-    let eye_from_texture = view.eye_from_scene * placement.0 * entity_from_texture;
+/// The light volumes of all volumes, in order.
+fn light_volumes<'a>(volumes: &[VolumeData<'a>]) -> Vec<&'a LightVolume> {
+    volumes.iter().filter_map(|volume| volume.8).flat_map(|own| &own.0).collect()
+}
+
+fn instance(
+    view: &View,
+    settings: &SceneSettings,
+    volume: &VolumeData,
+    bricks_start: u32,
+    first_sweep: u32,
+) -> VolumeInstance {
+    let (_, loaded, classified, texture, placement, lighting, ray_cast, shading, light_volumes) = volume;
+    let eye_from_texture = view.eye_from_scene * scene_from_texture(loaded, placement, settings);
     let size = DVec3::from(loaded.data.size.map(f64::from));
     let axes = eye_from_texture.matrix3;
     let voxel =
         (axes.x_axis.length() / size.x).min(axes.y_axis.length() / size.y).min(axes.z_axis.length() / size.z);
     let (low, high) = classified.domain;
-    let (lighting, [ambient, diffuse, specular, shininess]) = match lighting {
-        VolumeLighting::EmissionAbsorption => (0, [0.0; 4]),
-        VolumeLighting::Gradient { ambient, diffuse, specular, shininess } => {
-            (1, [*ambient, *diffuse, *specular, *shininess])
-        }
-    };
+    let mut lit = Lit::of(&lighting_in_force(lighting, *shading, settings));
+    if lit.kind == SCATTERS && light_volumes.is_none_or(|own| own.0.is_empty()) {
+        // Nothing arrives where there is no light.
+        lit.kind = UNLIT;
+    }
     VolumeInstance {
         texture_from_eye: glam::DMat4::from(eye_from_texture.inverse()).as_mat4(),
         size: size.as_vec3(),
@@ -359,15 +391,62 @@ fn instance(view: &View, settings: &SceneSettings, volume: &VolumeData, bricks_s
         bricks: UVec3::from(classified.bricks),
         least_transmittance: 1.0 - ray_cast.early_termination,
         skip_empty: u32::from(ray_cast.skip_empty),
-        lighting,
-        ambient,
-        diffuse,
-        specular,
-        shininess,
+        lighting: lit.kind,
+        ambient: lit.ambient,
+        diffuse: lit.diffuse,
+        specular: lit.specular,
+        shininess: lit.shininess,
         sentinel: SENTINEL_THRESHOLD,
         reach: view.reach as f32,
+        g: lit.g,
+        emission: lit.emission,
+        first_sweep,
     }
 }
+
+/// Kinds of lighting, as the shader knows them.
+const EMITS: u32 = 0;
+const GRADIENT: u32 = 1;
+const SCATTERS: u32 = 2;
+const UNLIT: u32 = 3;
+
+/// A lighting as the shader knows it.
+#[derive(Default)]
+struct Lit {
+    kind: u32,
+    ambient: f32,
+    diffuse: f32,
+    specular: f32,
+    shininess: f32,
+    g: f32,
+    emission: f32,
+}
+
+impl Lit {
+    fn of(lighting: &VolumeLighting) -> Self {
+        match *lighting {
+            VolumeLighting::EmissionAbsorption => Self { kind: EMITS, ..Default::default() },
+            VolumeLighting::Gradient { ambient, diffuse, specular, shininess } => {
+                Self { kind: GRADIENT, ambient, diffuse, specular, shininess, ..Default::default() }
+            }
+            VolumeLighting::SingleScattering { g, .. } => Self { kind: SCATTERS, g, ..Default::default() },
+            VolumeLighting::LightVolume { g, emission, gradient_specular, .. } => {
+                let shininess = GRADIENT_SHININESS;
+                Self {
+                    kind: SCATTERS,
+                    g,
+                    emission,
+                    specular: gradient_specular,
+                    shininess,
+                    ..Default::default()
+                }
+            }
+        }
+    }
+}
+
+/// Blinn's exponent of highlights in light volumes.
+const GRADIENT_SHININESS: f32 = 16.0;
 
 #[expect(clippy::too_many_arguments, reason = "what one draw reads")]
 fn draw(
@@ -405,6 +484,9 @@ fn draw(
         wgpu::BindingResource::Sampler(sampler),
     ];
     resources.extend(volumes.iter().map(|volume| wgpu::BindingResource::TextureView(&volume.3.view)));
+    let light_volumes = light_volumes(volumes);
+    let (sweeps, repeating) = (lookup::sweeps(gpu, &light_volumes), lookup::sampler(gpu));
+    resources.extend(lookup::resources(&light_volumes, &sweeps, &repeating));
     draw.cover(gpu, &resources, &target.view, timing);
 }
 
