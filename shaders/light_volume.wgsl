@@ -4,6 +4,8 @@
 // passed it is tau, and exp(-tau) of the light is left. The mean varies slowly even where tau does not, and where the medium is the same
 // everywhere it is exact at whatever resolution. tau is the sum over segments of at most a voxel, sampled in their middles: second order.
 //
+// Meshes in the way add an optical depth behind which nothing is left.
+//
 // reads  volume texture, extinction table, brick distances, shadow map
 // writes r32float: mean sigma_t times the length of a slice
 
@@ -37,12 +39,55 @@ struct Extinction {
     segments: u32,
 }
 
+// What meshes keep from the volume.
+struct Shadow {
+    // From the texture of the volume to the light's view: texels from the lower left, and height towards the light.
+    view_from_texture: mat4x4f,
+    is_there: u32,
+}
+
 @group(0) @binding(0) var<uniform> columns: Columns;
 @group(0) @binding(1) var<uniform> extinction: Extinction;
 @group(0) @binding(2) var table: texture_2d<f32>;
 @group(0) @binding(3) var brick_distances: texture_2d<u32>;
 @group(0) @binding(4) var linear_sampler: sampler;
 @group(0) @binding(5) var light_volume: texture_storage_3d<r32float, write>;
+@group(0) @binding(6) var<uniform> shadow: Shadow;
+// As `gbuffer.wgsl` writes it.
+@group(0) @binding(7) var shadow_map: texture_2d<f32>;
+
+// The optical depth of a mesh that is in the way, and how soon behind the face at which light enters it counts in full, in slices.
+const OPAQUE = 16.0;
+const SOONEST = 0.05;
+
+// How high up the light is met, seen from a place; far below where it is not.
+fn blocked_at(place: vec3f) -> f32 {
+    let at = (shadow.view_from_texture * vec4f(place, 1.0)).xy;
+    let size = vec2i(textureDimensions(shadow_map));
+    let texel = vec2i(i32(floor(at.x)), size.y - 1 - i32(floor(at.y)));
+    if any(texel < vec2i(0)) || any(texel >= size) {
+        return -1e30;
+    }
+    let found = textureLoad(shadow_map, texel, 0);
+    return select(-1e30, found.w, any(found.xyz != vec3f(0.0)));
+}
+
+// The same at four places that share the area of a column, since the edge of a shadow may pass between.
+fn blocked(across: vec2f, slice: f32) -> vec4f {
+    return vec4f(
+        blocked_at(place_of(across + vec2f(-0.25, -0.25), slice)),
+        blocked_at(place_of(across + vec2f(0.25, -0.25), slice)),
+        blocked_at(place_of(across + vec2f(-0.25, 0.25), slice)),
+        blocked_at(place_of(across + vec2f(0.25, 0.25), slice)),
+    );
+}
+
+// Optical depth of the meshes between a place and the light.
+fn shade(blockers: vec4f, place: vec3f) -> f32 {
+    let height = (shadow.view_from_texture * vec4f(place, 1.0)).z;
+    let visible = dot(vec4f(0.25), select(vec4f(0.0), vec4f(1.0), blockers <= vec4f(height)));
+    return min(-log(max(visible, 1e-7)), OPAQUE);
+}
 
 fn holds_nothing(place: vec3f) -> bool {
     let at = vec3u(clamp(place * extinction.size / BRICK, vec3f(0.0), vec3f(extinction.bricks) - 0.5));
@@ -101,6 +146,7 @@ fn sweep(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     var depth = 0.0;
     var slices = 0.0;
     var was_inside = 0.0;
+    var blockers = vec4f(-1e30);
     for (var slice = 0u; slice < columns.size.z; slice += 1u) {
         let first = vec2i(floor(-columns.slope * f32(slice))) - 3;
         let now = first + (((across - first) % width) + width) % width;
@@ -120,11 +166,17 @@ fn sweep(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
             column = now;
             depth = 0.0;
             slices = 0.0;
+            if shadow.is_there != 0u {
+                blockers = blocked(at, f32(slice));
+            }
         }
         if slices > 0.0 {
             mean = depth / slices;
         } else {
             mean = sigma_t(place_of(at, f32(slice))) * extinction.segment * f32(extinction.segments);
+        }
+        if shadow.is_there != 0u {
+            mean += shade(blockers, place_of(at, f32(slice))) / max(slices, SOONEST);
         }
         was_inside = is_inside;
         textureStore(light_volume, vec3u(vec2u(across), slice), vec4f(mean, 0.0, 0.0, 0.0));

@@ -51,6 +51,7 @@ pub fn all() -> Vec<Mirror> {
     vec![
         view::FrameUniform::mirror(),
         view::LightUniform::mirror(),
+        passes::dimmed_gbuffer::LightViewUniform::mirror(),
         passes::gbuffer::SeenMeshUniform::mirror(),
         passes::medium::MediumUniform::mirror(),
         passes::scattering_gbuffer::MapCameraUniform::mirror(),
@@ -60,6 +61,7 @@ pub fn all() -> Vec<Mirror> {
         passes::combine::CombinationUniform::mirror(),
         passes::surface::MeshInstance::mirror(),
         passes::light_volume::ExtinctionUniform::mirror(),
+        passes::light_volume::shadow::ShadowUniform::mirror(),
         passes::light_volume::sweep::ColumnsUniform::mirror(),
         passes::light_volume::sweep::SweepUniform::mirror(),
         passes::raycast::VolumeInstance::mirror(),
@@ -71,13 +73,17 @@ pub fn all() -> Vec<Mirror> {
 /// interpolates one and the shader the other.
 pub fn generated_modules() -> Vec<(&'static str, String)> {
     use crate::gpu::Filtering::{Sampler, Shader};
+    let count = passes::light_volume::through::VeilCount { volumes: 2, lights: 1 };
+    let first = passes::raycast::FIXED_BINDINGS + 2;
+    let [light_volumes, veils] = passes::light_volume::through::modules(count, Sampler, first);
     vec![
         (
             "volumes",
             passes::raycast::volumes_module(&[Sampler, Shader], true, passes::raycast::FIXED_BINDINGS),
         ),
         view::lights_module(4),
-        passes::light_volume::lookup::light_volumes_module(2, Sampler, passes::raycast::FIXED_BINDINGS + 2),
+        light_volumes,
+        veils,
         passes::scattered_radiosity::sampling_module(&Default::default(), 5),
         passes::scattered_radiosity::listing_module(false),
     ]

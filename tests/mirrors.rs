@@ -17,6 +17,7 @@ fn shaders() -> Vec<(&'static str, naga::Module, String)> {
         "combine",
         "surface",
         "light_volume",
+        "dimmed_gbuffer",
         "raycast",
         "tonemap",
     ]

@@ -16,6 +16,7 @@ macro_rules! sources {
 sources! {
     "bssrdf" => "shared/bssrdf.wgsl",
     "combine" => "combine.wgsl",
+    "dimmed_gbuffer" => "dimmed_gbuffer.wgsl",
     "estimator" => "shared/estimator.wgsl",
     "frame" => "shared/frame.wgsl",
     "fresnel" => "shared/fresnel.wgsl",

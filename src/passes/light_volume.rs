@@ -5,9 +5,13 @@
 //! the volume; a driver without memory fails it. Colours of lights and of transfer functions, the viewer and the step of rays change nothing.
 
 pub mod lookup;
+pub mod shadow;
 pub mod sweep;
+pub mod through;
 
 use super::classify::Classified;
+use super::gbuffer::Gbuffer;
+use super::light_gbuffer::Meshes;
 use super::raycast::{BRICK_ROW, volumes_module};
 use super::upload::{SENTINEL_THRESHOLD, VolumeTexture};
 use crate::components::{DirectionalLight, Motion, Placement, SceneSettings, Shading, VolumeLighting};
@@ -22,6 +26,7 @@ use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::change_detection::Tick;
 use bevy_ecs::prelude::*;
 use glam::{DAffine3, DVec3, UVec2, UVec3, Vec3};
+use shadow::Shadow;
 use sweep::Sweep;
 
 /// The light volumes of a volume, one for each light, in the order of the lights.
@@ -51,6 +56,7 @@ struct Recipe {
     slice: f64,
     volume: wgpu::TextureView,
     classified: Tick,
+    shadow: Option<Shadow>,
 }
 
 /// What the pass keeps between frames.
@@ -79,7 +85,7 @@ mirror! {
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
 /// The bindings of the kernel in front of the volume.
-const FIRST_VOLUME: usize = 6;
+const FIRST_VOLUME: usize = 8;
 
 /// The lighting of a volume, with `Shading` taken into account.
 pub(crate) fn lighting_in_force(
@@ -111,9 +117,9 @@ type Volumes<'w, 's> = Query<
 pub(crate) fn run(
     mut commands: Commands,
     (gpu, settings): (Res<Gpu>, Res<SceneSettings>),
-    mut volumes: Volumes,
+    (mut volumes, meshes): (Volumes, Meshes),
     lights: Query<(Entity, &DirectionalLight, Option<&Motion>)>,
-    mut sweeper: ResMut<LightSweeper>,
+    (mut sweeper, mut gbuffer): (ResMut<LightSweeper>, ResMut<Gbuffer>),
     (mut timer, mut report, mut failure): (Option<ResMut<PassTimer>>, ResMut<Report>, ResMut<Failure>),
 ) {
     let lights = lights_in_order(&lights);
@@ -127,16 +133,25 @@ pub(crate) fn run(
             continue;
         };
         let scene_from_texture = scene_from_texture(loaded, placement, &settings);
+        let texture_from_scene = scene_from_texture.inverse();
         let mut own = LightVolumes::default();
         let all = kept.as_mut().map_or(&mut own, |kept| kept.bypass_change_detection());
         let mut old = std::mem::take(&mut all.0);
         for (light, to_light) in &lights {
             let cells = cells(&gpu, loaded.data.size, resolution);
-            let direction = scene_from_texture.inverse().transform_vector3(-*to_light);
+            let direction = texture_from_scene.transform_vector3(-*to_light);
             let sweep = Sweep::new(cells, direction);
             let slice = scene_from_texture.transform_vector3(sweep.step()).length();
-            let recipe =
-                Recipe { sweep, slice, volume: texture.view.clone(), classified: classified.last_changed() };
+            let shadow = settings
+                .meshes_shade_volumes
+                .then(|| Shadow::of(loaded, placement, &settings, *to_light, entity, &meshes));
+            let recipe = Recipe {
+                sweep,
+                slice,
+                volume: texture.view.clone(),
+                classified: classified.last_changed(),
+                shadow: shadow.flatten(),
+            };
             let found =
                 old.iter().position(|volume| volume.light == *light).map(|index| old.swap_remove(index));
             if let Some(found) = found.filter(|found| found.recipe == recipe) {
@@ -145,7 +160,8 @@ pub(crate) fn run(
                 continue;
             }
             let timing = timer.as_mut().and_then(|timer| timer.time_compute("light_volume"));
-            match make(&gpu, &mut sweeper, loaded, &classified, texture, &recipe, timing, &mut report) {
+            let source = Source { loaded, classified: &classified, texture, texture_from_scene };
+            match make(&gpu, &mut sweeper, &mut gbuffer, &source, &recipe, timing, &mut report) {
                 Ok(grid) => {
                     sweeper.version += 1;
                     held += grid.bytes();
@@ -179,17 +195,24 @@ fn cells(gpu: &Gpu, size: [u32; 3], resolution: f32) -> UVec3 {
     UVec3::from(size.map(along))
 }
 
-#[expect(clippy::too_many_arguments, reason = "what one dispatch reads and writes")]
+/// The volume that a light volume is made of.
+struct Source<'a> {
+    loaded: &'a LoadedVolume,
+    classified: &'a Classified,
+    texture: &'a VolumeTexture,
+    texture_from_scene: DAffine3,
+}
+
 fn make(
     gpu: &Gpu,
     sweeper: &mut LightSweeper,
-    loaded: &LoadedVolume,
-    classified: &Classified,
-    texture: &VolumeTexture,
+    gbuffer: &mut Gbuffer,
+    source: &Source,
     recipe: &Recipe,
     timing: Option<wgpu::ComputePassTimestampWrites>,
     report: &mut Report,
 ) -> Result<Grid, GpuError> {
+    let Source { loaded, classified, texture, texture_from_scene } = source;
     let filtering = texture.format.filtering;
     let size = recipe.sweep.size();
     let grid = Grid::new(gpu, "light volume", size, FORMAT)?;
@@ -214,6 +237,8 @@ fn make(
     let table = texture_of(gpu, "extinction table", table_size, FORMAT, bytemuck::cast_slice(&table));
     let bricks = brick_texture(gpu, &classified.distances);
     let sampler = linear_sampler(gpu);
+    let (shadow, shadow_map) =
+        shadow::draw(gpu, gbuffer, recipe.shadow.as_ref(), *texture_from_scene, report)?;
     let resources = [
         columns.as_entire_binding(),
         extinction.as_entire_binding(),
@@ -221,6 +246,8 @@ fn make(
         wgpu::BindingResource::TextureView(&bricks.create_view(&Default::default())),
         wgpu::BindingResource::Sampler(&sampler),
         wgpu::BindingResource::TextureView(&grid.view),
+        shadow.as_entire_binding(),
+        wgpu::BindingResource::TextureView(&shadow_map),
         wgpu::BindingResource::TextureView(&texture.view),
     ];
     let kernel = sweeper.kernel(gpu, filtering, report)?;
@@ -245,6 +272,8 @@ impl LightSweeper {
                     binding::INTEGERS,
                     binding::SAMPLER,
                     binding::GRID_OUT,
+                    binding::UNIFORM,
+                    binding::TEXTURE,
                     binding::texture(wgpu::TextureViewDimension::D3, filtering == Filtering::Sampler),
                 ];
                 let kernel = Kernel::new(

@@ -3,6 +3,7 @@
 pub(crate) mod body;
 pub mod classify;
 pub mod combine;
+pub mod dimmed_gbuffer;
 pub mod gbuffer;
 pub mod light_gbuffer;
 pub mod light_volume;
@@ -32,7 +33,7 @@ impl Plugin for ScatteringPlugin {
             .init_resource::<scattered_radiosity::Refinement>()
             .init_resource::<combine::Combiner>();
         let there_is_a_gpu = resource_exists::<Gpu>;
-        app.init_resource::<light_volume::LightSweeper>();
+        app.init_resource::<light_volume::LightSweeper>().init_resource::<dimmed_gbuffer::Dimmer>();
         app.add_systems(
             Update,
             (

@@ -90,6 +90,7 @@ impl Sweep {
             reach_scale: scale.as_vec3(),
             reach_offset: offset.as_vec3(),
             size: self.size().as_vec3(),
+            step: self.step().as_vec3(),
         }
     }
 
@@ -113,6 +114,7 @@ mirror! {
         reach_scale: Vec3,
         reach_offset: Vec3,
         size: Vec3,
+        step: Vec3,
     }
 }
 
