@@ -32,6 +32,7 @@ sources! {
     "scattering_texels" => "scattering_texels.wgsl",
     "surface" => "surface.wgsl",
     "tonemap" => "tonemap.wgsl",
+    "two_stream" => "shared/two_stream.wgsl",
 }
 
 /// The text of a shader with all its imports in front of what needs them. `generated` are modules made for this use.
