@@ -35,6 +35,7 @@ sources! {
     "surface" => "surface.wgsl",
     "sweep" => "shared/sweep.wgsl",
     "tonemap" => "tonemap.wgsl",
+    "two_stream" => "shared/two_stream.wgsl",
 }
 
 /// The text of a shader with all its imports in front of what needs them. `generated` are modules made for this use.
