@@ -9,7 +9,7 @@
 // reads  volume texture, extinction table, brick distances, shadow map
 // writes r32float: mean sigma_t times the length of a slice
 
-#import volumes
+#import classified
 
 struct Columns {
     // Takes (across, across, slice), in cells from the corner of the volume, to the texture of the volume.
@@ -22,21 +22,11 @@ struct Columns {
     size: vec3u,
 }
 
-struct Extinction {
-    // Place in the table = texel * scale + offset.
-    lookup_scale: f32,
-    lookup_offset: f32,
-    // The last entry of the table.
-    last: f32,
-    // Texels beyond this touch a sample that is not finite.
-    sentinel: f32,
-    // Voxels along each axis.
-    size: vec3f,
+struct Segments {
     // Length of a segment, scene units.
-    segment: f32,
-    bricks: vec3u,
-    // Segments from slice to slice.
-    segments: u32,
+    length: f32,
+    // From slice to slice.
+    count: u32,
 }
 
 // What meshes keep from the volume.
@@ -46,15 +36,12 @@ struct Shadow {
     is_there: u32,
 }
 
-@group(0) @binding(0) var<uniform> columns: Columns;
-@group(0) @binding(1) var<uniform> extinction: Extinction;
-@group(0) @binding(2) var table: texture_2d<f32>;
-@group(0) @binding(3) var brick_distances: texture_2d<u32>;
-@group(0) @binding(4) var linear_sampler: sampler;
+@group(0) @binding(4) var<uniform> columns: Columns;
 @group(0) @binding(5) var light_volume: texture_storage_3d<r32float, write>;
 @group(0) @binding(6) var<uniform> shadow: Shadow;
 // As `gbuffer.wgsl` writes it.
 @group(0) @binding(7) var shadow_map: texture_2d<f32>;
+@group(0) @binding(8) var<uniform> segments: Segments;
 
 // The optical depth of a mesh that is in the way, and how soon behind the face at which light enters it counts in full, in slices.
 const OPAQUE = 16.0;
@@ -89,39 +76,19 @@ fn shade(blockers: vec4f, place: vec3f) -> f32 {
     return min(-log(max(visible, 1e-7)), OPAQUE);
 }
 
-fn holds_nothing(place: vec3f) -> bool {
-    let at = vec3u(clamp(place * extinction.size / BRICK, vec3f(0.0), vec3f(extinction.bricks) - 0.5));
-    let brick = (at.z * extinction.bricks.y + at.y) * extinction.bricks.x + at.x;
-    return textureLoad(brick_distances, vec2u(brick % BRICK_ROW, brick / BRICK_ROW), 0).r != 0u;
-}
-
-// sigma_t per scene unit, constant beyond the faces.
-fn sigma_t(place: vec3f) -> f32 {
-    let inside = clamp(place, vec3f(0.0), vec3f(1.0));
-    if holds_nothing(inside) {
-        return 0.0;
-    }
-    let texel = texel_at(0u, inside);
-    let at = clamp(texel * extinction.lookup_scale + extinction.lookup_offset, 0.0, 1.0) * extinction.last;
-    let below = min(floor(at), extinction.last - 1.0);
-    let entry = vec2u(u32(below), 0u);
-    let found = mix(textureLoad(table, entry, 0).r, textureLoad(table, entry + vec2u(1u, 0u), 0).r, at - below);
-    return select(found, 0.0, texel > extinction.sentinel);
-}
-
 fn place_of(across: vec2f, slice: f32) -> vec3f {
     return (columns.texture_from_cells * vec4f(across, slice, 1.0)).xyz;
 }
 
 // Optical depth of the stretch of a column that ends at `across` in a slice.
 fn depth_before(across: vec2f, slice: f32) -> f32 {
-    let part = 1.0 / f32(extinction.segments);
+    let part = 1.0 / f32(segments.count);
     var sum = 0.0;
-    for (var i = 0u; i < extinction.segments; i += 1u) {
+    for (var i = 0u; i < segments.count; i += 1u) {
         let back = 1.0 - (f32(i) + 0.5) * part;
-        sum += sigma_t(place_of(across - columns.slope * back, slice - back));
+        sum += classified_at(place_of(across - columns.slope * back, slice - back)).a;
     }
-    return sum * extinction.segment;
+    return sum * segments.length;
 }
 
 // How far inside the volume a place is across, in slices; less than 0 outside.
@@ -173,7 +140,7 @@ fn sweep(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
         if slices > 0.0 {
             mean = depth / slices;
         } else {
-            mean = sigma_t(place_of(at, f32(slice))) * extinction.segment * f32(extinction.segments);
+            mean = classified_at(place_of(at, f32(slice))).a * segments.length * f32(segments.count);
         }
         if shadow.is_there != 0u {
             mean += shade(blockers, place_of(at, f32(slice))) / max(slices, SOONEST);

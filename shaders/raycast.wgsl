@@ -12,8 +12,10 @@
 #import fullscreen
 #import lights
 #import phase
+#import two_stream
 #import volumes
 #import light_volumes
+#import scattered
 
 struct VolumeInstance {
     texture_from_eye: mat4x4f,
@@ -33,7 +35,7 @@ struct VolumeInstance {
     // The ray ends when less than this is left of what lies behind.
     least_transmittance: f32,
     skip_empty: u32,
-    // 0 emission-absorption, 1 gradient, 2 scattering, 3 scattering without any light.
+    // 0 emission-absorption, 1 gradient, 2 scattered once, 3 scattered without any light, 4 scattered however often.
     lighting: u32,
     ambient: f32,
     diffuse: f32,
@@ -49,6 +51,10 @@ struct VolumeInstance {
     emission: f32,
     // Light volume of the first light.
     first_sweep: u32,
+    // Fluence = texel * this.
+    fluence_scale: f32,
+    // From eye space to cosines with the axes of the volume.
+    axes: mat3x3f,
 }
 
 // Where a ray is within one volume.
@@ -171,9 +177,12 @@ fn shade(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre
     return colour * (volume.ambient + volume.diffuse * diffuse) + volume.specular * specular;
 }
 
-// Light that is scattered towards the eye: the source function where the albedo is `colour`.
+// Light that is scattered towards the eye: the source function where the albedo is `colour`. See `src/optics/two_stream.rs`.
 fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
     let albedo = min(colour, vec3f(1.0));
+    let is_often = volume.lighting == 4u;
+    // Where light is scattered often, what a forward peak scatters counts as light that was not.
+    let beam = select(vec3f(1.0), two_stream_beam(albedo, volume.g), is_often);
     var arriving = vec3f(0.0);
     var specular = vec3f(0.0);
     var normal: Normal;
@@ -181,11 +190,19 @@ fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, cent
         normal = normal_at(index, volume, place, centre, ray);
     }
     for (var i = 0u; i < frame.light_count; i += 1u) {
-        let light = lights[i].irradiance * light_left(volume.first_sweep + i, place);
-        arriving += light * henyey_greenstein(-lights[i].to_light, -ray.direction, volume.g);
+        let depth = light_depth(volume.first_sweep + i, place);
+        let phase = henyey_greenstein(-lights[i].to_light, -ray.direction, volume.g);
+        arriving += lights[i].irradiance * exp(-depth * beam) * phase;
         if volume.specular > 0.0 {
-            specular += light / PI * highlight(normal, lights[i].to_light, volume.shininess, ray);
+            specular += lights[i].irradiance * exp(-depth) / PI * highlight(normal, lights[i].to_light, volume.shininess, ray);
         }
+    }
+    if is_often {
+        var leaning = 1.0;
+        if volume.g != 0.0 {
+            leaning = max(1.0 + 3.0 * volume.g * dot(volume.axes * -ray.direction, flux_at(index, place)), 0.0);
+        }
+        arriving += leaning * volume.fluence_scale / (4.0 * PI) * fluence_at(index, place);
     }
     return albedo * arriving + volume.emission * colour + volume.specular * min(4.0 * normal.steepness, 1.0) * specular;
 }
@@ -194,7 +211,7 @@ fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, cent
 fn source(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
     switch volume.lighting {
         case 1u: { return shade(index, volume, colour, place, centre, ray); }
-        case 2u: { return scatter(index, volume, colour, place, centre, ray); }
+        case 2u, 4u: { return scatter(index, volume, colour, place, centre, ray); }
         case 3u: { return volume.emission * colour; }
         default: { return colour; }
     }

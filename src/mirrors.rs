@@ -60,10 +60,15 @@ pub fn all() -> Vec<Mirror> {
         passes::scattered_radiosity::EstimatorUniform::mirror(),
         passes::combine::CombinationUniform::mirror(),
         passes::surface::MeshInstance::mirror(),
-        passes::light_volume::ExtinctionUniform::mirror(),
+        passes::light_cells::CellsUniform::mirror(),
+        passes::light_volume::SegmentsUniform::mirror(),
+        passes::light_volume::medium::ClassifiedUniform::mirror(),
         passes::light_volume::shadow::ShadowUniform::mirror(),
         passes::light_volume::sweep::ColumnsUniform::mirror(),
         passes::light_volume::sweep::SweepUniform::mirror(),
+        passes::scattered_light::ScatterSweepUniform::mirror(),
+        passes::scattered_light::SliceUniform::mirror(),
+        passes::summed_light::SummationUniform::mirror(),
         passes::raycast::VolumeInstance::mirror(),
         passes::tonemap::DisplayUniform::mirror(),
     ]
@@ -74,16 +79,16 @@ pub fn all() -> Vec<Mirror> {
 pub fn generated_modules() -> Vec<(&'static str, String)> {
     use crate::gpu::Filtering::{Sampler, Shader};
     let count = passes::light_volume::through::VeilCount { volumes: 2, lights: 1 };
-    let first = passes::raycast::FIXED_BINDINGS + 2;
+    // Behind the bindings of every shader.
+    let first_volume = 20;
+    let first = first_volume + 2;
     let [light_volumes, veils] = passes::light_volume::through::modules(count, Sampler, first);
     vec![
-        (
-            "volumes",
-            passes::raycast::volumes_module(&[Sampler, Shader], true, passes::raycast::FIXED_BINDINGS),
-        ),
+        ("volumes", passes::raycast::volumes_module(&[Sampler, Shader], true, first_volume)),
         view::lights_module(4),
         light_volumes,
         veils,
+        passes::raycast::scattered_module(&[true, false], 40),
         passes::scattered_radiosity::sampling_module(&Default::default(), 5),
         passes::scattered_radiosity::listing_module(false),
     ]

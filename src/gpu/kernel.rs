@@ -74,14 +74,41 @@ impl Kernel {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &bind_group, &[]);
         match invocations {
-            // No dimension may have more than 65,535 workgroups.
             Invocations::Count(count) => {
-                let groups = count.div_ceil(Self::WORKGROUP);
-                let across = groups.clamp(1, 32_768);
-                pass.dispatch_workgroups(across, groups.div_ceil(across), 1);
+                let (across, down) = Self::workgroups(count);
+                pass.dispatch_workgroups(across, down, 1);
             }
             Invocations::Planned(buffer, offset) => pass.dispatch_workgroups_indirect(buffer, offset),
         }
+    }
+
+    /// Runs at least `invocations` of the kernel again and again, each time with another struct of its
+    /// [`binding::UNIFORM_EACH`](super::binding::UNIFORM_EACH), at the given offsets; what one run writes the next one reads.
+    pub fn sweep(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        resources: &[wgpu::BindingResource],
+        invocations: u32,
+        offsets: impl Iterator<Item = u32>,
+        timing: Option<wgpu::ComputePassTimestampWrites>,
+    ) {
+        let bind_group = super::draw::bind(gpu, self.label, &self.layout, resources);
+        let descriptor = wgpu::ComputePassDescriptor { label: Some(self.label), timestamp_writes: timing };
+        let mut pass = encoder.begin_compute_pass(&descriptor);
+        pass.set_pipeline(&self.pipeline);
+        let (across, down) = Self::workgroups(invocations);
+        for offset in offsets {
+            pass.set_bind_group(0, &bind_group, &[offset]);
+            pass.dispatch_workgroups(across, down, 1);
+        }
+    }
+
+    /// Workgroups across and down: no dimension may have more than 65,535.
+    fn workgroups(invocations: u32) -> (u32, u32) {
+        let groups = invocations.div_ceil(Self::WORKGROUP);
+        let across = groups.clamp(1, 32_768);
+        (across, groups.div_ceil(across))
     }
 }
 

@@ -5,6 +5,7 @@
 //! the volume; a driver without memory fails it. Colours of lights and of transfer functions, the viewer and the step of rays change nothing.
 
 pub mod lookup;
+pub mod medium;
 pub mod shadow;
 pub mod sweep;
 pub mod through;
@@ -12,12 +13,11 @@ pub mod through;
 use super::classify::Classified;
 use super::gbuffer::Gbuffer;
 use super::light_gbuffer::Meshes;
-use super::raycast::{BRICK_ROW, volumes_module};
-use super::upload::{SENTINEL_THRESHOLD, VolumeTexture};
+use super::raycast::volumes_module;
+use super::upload::VolumeTexture;
 use crate::components::{DirectionalLight, Motion, Placement, SceneSettings, Shading, VolumeLighting};
 use crate::gpu::{
-    Filtering, Gpu, GpuError, Grid, Invocations, Kernel, KernelDescriptor, PassTimer, binding, texture_of,
-    uniform_buffer,
+    Filtering, Gpu, GpuError, Grid, Invocations, Kernel, KernelDescriptor, PassTimer, binding, uniform_buffer,
 };
 use crate::loading::LoadedVolume;
 use crate::render::Failure;
@@ -25,7 +25,8 @@ use crate::view::lights_in_order;
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::change_detection::Tick;
 use bevy_ecs::prelude::*;
-use glam::{DAffine3, DVec3, UVec2, UVec3, Vec3};
+use glam::{DAffine3, DVec3, UVec3};
+use medium::Medium;
 use shadow::Shadow;
 use sweep::Sweep;
 
@@ -67,17 +68,11 @@ pub(crate) struct LightSweeper {
 }
 
 mirror! {
-    /// Mirror of `Extinction` in `shaders/light_volume.wgsl`.
+    /// Mirror of `Segments` in `shaders/light_volume.wgsl`.
     "light_volume":
-    pub(crate) struct ExtinctionUniform as "Extinction" {
-        lookup_scale: f32,
-        lookup_offset: f32,
-        last: f32,
-        sentinel: f32,
-        size: Vec3,
-        segment: f32,
-        bricks: UVec3,
-        segments: u32,
+    pub(crate) struct SegmentsUniform as "Segments" {
+        length: f32,
+        count: u32,
     }
 }
 
@@ -85,7 +80,7 @@ mirror! {
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
 /// The bindings of the kernel in front of the volume.
-const FIRST_VOLUME: usize = 8;
+pub(crate) const FIRST_VOLUME: usize = 9;
 
 /// The lighting of a volume, with `Shading` taken into account.
 pub(crate) fn lighting_in_force(
@@ -218,38 +213,22 @@ fn make(
     let grid = Grid::new(gpu, "light volume", size, FORMAT)?;
     let voxels = DVec3::from(loaded.data.size.map(f64::from));
     // No segment is longer than a voxel, so that nothing which rays see is missed.
-    let segments = (recipe.sweep.step() * voxels).abs().max_element().ceil().max(1.0);
-    let (low, high) = classified.domain;
-    let extinction = ExtinctionUniform {
-        lookup_scale: texture.format.scale / (high - low),
-        lookup_offset: (texture.format.offset - low) / (high - low),
-        last: (classified.table.entries.len() - 1) as f32,
-        sentinel: SENTINEL_THRESHOLD,
-        size: voxels.as_vec3(),
-        segment: (recipe.slice / segments) as f32,
-        bricks: UVec3::from(classified.bricks),
-        segments: segments as u32,
-    };
+    let count = (recipe.sweep.step() * voxels).abs().max_element().ceil().max(1.0) as u32;
+    let segments = SegmentsUniform { length: (recipe.slice / f64::from(count)) as f32, count };
     let columns = uniform_buffer(gpu, "columns", &recipe.sweep.columns());
-    let extinction = uniform_buffer(gpu, "extinction", &extinction);
-    let table: Vec<f32> = classified.table.entries.iter().map(|entry| entry.w).collect();
-    let table_size = UVec2::new(table.len() as u32, 1);
-    let table = texture_of(gpu, "extinction table", table_size, FORMAT, bytemuck::cast_slice(&table));
-    let bricks = brick_texture(gpu, &classified.distances);
-    let sampler = linear_sampler(gpu);
+    let segments = uniform_buffer(gpu, "segments", &segments);
+    let medium = Medium::new(gpu, loaded, classified, texture);
     let (shadow, shadow_map) =
         shadow::draw(gpu, gbuffer, recipe.shadow.as_ref(), *texture_from_scene, report)?;
-    let resources = [
+    let mut resources = medium.resources();
+    resources.extend([
         columns.as_entire_binding(),
-        extinction.as_entire_binding(),
-        wgpu::BindingResource::TextureView(&table.create_view(&Default::default())),
-        wgpu::BindingResource::TextureView(&bricks.create_view(&Default::default())),
-        wgpu::BindingResource::Sampler(&sampler),
         wgpu::BindingResource::TextureView(&grid.view),
         shadow.as_entire_binding(),
         wgpu::BindingResource::TextureView(&shadow_map),
+        segments.as_entire_binding(),
         wgpu::BindingResource::TextureView(&texture.view),
-    ];
+    ]);
     let kernel = sweeper.kernel(gpu, filtering, report)?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     kernel.run(gpu, &mut encoder, &resources, Invocations::Count(size.x * size.y), timing);
@@ -265,17 +244,15 @@ impl LightSweeper {
         let index = match known {
             Some(index) => index,
             None => {
-                let bindings = [
+                let mut bindings = Medium::BINDINGS.to_vec();
+                bindings.extend([
                     binding::UNIFORM,
-                    binding::UNIFORM,
-                    binding::TEXTURE,
-                    binding::INTEGERS,
-                    binding::SAMPLER,
                     binding::GRID_OUT,
                     binding::UNIFORM,
                     binding::TEXTURE,
+                    binding::UNIFORM,
                     binding::texture(wgpu::TextureViewDimension::D3, filtering == Filtering::Sampler),
-                ];
+                ]);
                 let kernel = Kernel::new(
                     gpu,
                     &KernelDescriptor {
@@ -292,22 +269,4 @@ impl LightSweeper {
         };
         Ok(&self.kernels[index].1)
     }
-}
-
-/// The distances of bricks in rows.
-fn brick_texture(gpu: &Gpu, distances: &[u8]) -> wgpu::Texture {
-    let mut rows = distances.to_vec();
-    rows.resize(rows.len().next_multiple_of(BRICK_ROW as usize), 0);
-    let size = UVec2::new(BRICK_ROW, (rows.len() / BRICK_ROW as usize) as u32);
-    texture_of(gpu, "brick distances", size, wgpu::TextureFormat::R8Uint, &rows)
-}
-
-/// A sampler that interpolates linearly and clamps.
-fn linear_sampler(gpu: &Gpu) -> wgpu::Sampler {
-    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("linear"),
-        mag_filter: wgpu::FilterMode::Linear,
-        min_filter: wgpu::FilterMode::Linear,
-        ..Default::default()
-    })
 }

@@ -5,12 +5,15 @@ pub mod classify;
 pub mod combine;
 pub mod dimmed_gbuffer;
 pub mod gbuffer;
+pub mod light_cells;
 pub mod light_gbuffer;
 pub mod light_volume;
 pub mod medium;
 pub mod raycast;
+pub mod scattered_light;
 pub mod scattered_radiosity;
 pub mod scattering_gbuffer;
+pub mod summed_light;
 pub mod surface;
 pub mod surface_points;
 pub mod tonemap;
@@ -33,11 +36,17 @@ impl Plugin for ScatteringPlugin {
             .init_resource::<scattered_radiosity::Refinement>()
             .init_resource::<combine::Combiner>();
         let there_is_a_gpu = resource_exists::<Gpu>;
-        app.init_resource::<light_volume::LightSweeper>().init_resource::<dimmed_gbuffer::Dimmer>();
+        app.init_resource::<light_volume::LightSweeper>()
+            .init_resource::<dimmed_gbuffer::Dimmer>()
+            .init_resource::<light_cells::CellAverager>()
+            .init_resource::<scattered_light::Scatterer>()
+            .init_resource::<summed_light::Adder>();
         app.add_systems(
             Update,
             (
-                light_volume::run.in_set(Stage::LightVolume),
+                (light_volume::run, light_cells::run, scattered_light::run, summed_light::run)
+                    .chain()
+                    .in_set(Stage::LightVolume),
                 (body::measure, body::forget, surface_points::refine, light_gbuffer::run)
                     .chain()
                     .in_set(Stage::LightGbuffer),

@@ -6,6 +6,7 @@
 
 use super::classify::{Classified, classify};
 use super::light_volume::{LightVolume, LightVolumes, lighting_in_force, lookup, scene_from_texture};
+use super::summed_light::SummedLight;
 use super::surface::Surface;
 use super::upload::{SENTINEL_THRESHOLD, VolumeTexture, VolumeUploadPlugin};
 use crate::components::{Placement, RayCast as RayCastSettings, SceneSettings, Shading, VolumeLighting};
@@ -20,7 +21,7 @@ use crate::view::{FrameBuffers, Picture, View, far_background, lights_module};
 use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
-use glam::{DVec3, Mat4, UVec2, UVec3, Vec3, Vec4};
+use glam::{DMat3, DVec3, Mat3, Mat4, UVec2, UVec3, Vec3, Vec4};
 use std::fmt::Write;
 
 /// Casts rays through volumes.
@@ -61,6 +62,8 @@ struct Variant {
     any_lit: bool,
     /// Light volumes of all volumes together.
     light_volumes: usize,
+    /// Which volumes have scattered light.
+    scattered: Vec<bool>,
 }
 
 /// The lookup tables and brick distances of all volumes.
@@ -102,6 +105,8 @@ mirror! {
         g: f32,
         emission: f32,
         first_sweep: u32,
+        fluence_scale: f32,
+        axes: Mat3,
     }
 }
 
@@ -123,6 +128,7 @@ type VolumeData<'a> = (
     &'a RayCastSettings,
     Option<&'a Shading>,
     Option<&'a LightVolumes>,
+    Option<&'a SummedLight>,
 );
 type Volumes<'w, 's> = Query<
     'w,
@@ -137,6 +143,7 @@ type Volumes<'w, 's> = Query<
         &'static RayCastSettings,
         Option<&'static Shading>,
         Option<&'static LightVolumes>,
+        Option<&'static SummedLight>,
     ),
 >;
 
@@ -158,15 +165,16 @@ fn run(
     volumes.sort_by_key(|volume| volume.0);
     let limit = gpu.device.limits().max_sampled_textures_per_shader_stage - OTHER_TEXTURES;
     let light_volumes = light_volumes(&volumes).len();
-    if volumes.len() + light_volumes > limit as usize {
+    let scattered = 2 * volumes.iter().filter(|volume| volume.9.is_some()).count();
+    if volumes.len() + light_volumes + scattered > limit as usize {
         let mut message = format!("{} volumes are in the scene", volumes.len());
         if light_volumes > 0 {
-            message += &format!(", with {light_volumes} light volumes between them");
+            message += &format!(", with {} textures of light between them", light_volumes + scattered);
         }
         message += &format!("; this adapter can show {limit} at once");
         problems.0.push(
             Problem::error(message)
-                .help("merge volumes, or leave some out; each volume that scatters has a light volume for each light")
+                .help("merge volumes, or leave some out; a volume that scatters has one for each light, and a light volume two more")
                 .on(volumes[volumes.len() - 1].0, "Volume"),
         );
         return;
@@ -196,7 +204,8 @@ fn prepare(
     let filtering = volumes.iter().map(|volume| volume.3.format.filtering).collect();
     let any_lit = volumes.iter().any(|volume| !matches!(volume.5, VolumeLighting::EmissionAbsorption));
     let light_volumes = light_volumes(volumes).len();
-    let variant = Variant { filtering, light_capacity, any_lit, light_volumes };
+    let scattered = volumes.iter().map(|volume| volume.9.is_some()).collect();
+    let variant = Variant { filtering, light_capacity, any_lit, light_volumes, scattered };
     if caster.draw.as_ref().is_none_or(|(made_for, _)| *made_for != variant) {
         caster.draw = Some((variant.clone(), make(gpu, &variant)?));
         report.pipelines.push("raycast");
@@ -242,8 +251,12 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
         .iter()
         .map(|filtering| binding::texture(wgpu::TextureViewDimension::D3, *filtering == Filtering::Sampler));
     let light_volumes = lookup::bindings(variant.light_volumes, lookup::filtering(gpu));
-    let bindings: Vec<_> = fixed.into_iter().chain(textures).chain(light_volumes).collect();
+    let scattered = variant.scattered.iter().filter(|scattered| **scattered);
+    let scattered = scattered.flat_map(|_| [binding::texture(wgpu::TextureViewDimension::D3, true); 2]);
+    let bindings: Vec<_> =
+        fixed.into_iter().chain(textures).chain(light_volumes.clone()).chain(scattered).collect();
     let first = FIXED_BINDINGS + variant.filtering.len();
+    let first_scattered = first + light_volumes.len();
     Draw::new(
         gpu,
         &DrawDescriptor {
@@ -252,6 +265,7 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
                 ("volumes", volumes_module(&variant.filtering, variant.any_lit, FIXED_BINDINGS)),
                 lights_module(variant.light_capacity),
                 lookup::light_volumes_module(variant.light_volumes, lookup::filtering(gpu), first),
+                scattered_module(&variant.scattered, first_scattered),
             ],
             entry_points: ("cover", "march"),
             bindings: &bindings,
@@ -289,6 +303,31 @@ pub(crate) fn volumes_module(filtering: &[Filtering], any_lit: bool, first_bindi
         "fn texel_at(volume: u32, place: vec3f) -> f32 {{\n    switch volume {{\n{cases}    }}\n}}\n"
     );
     text
+}
+
+/// The WGSL module `scattered`: `fluence_at(volume, place)` and `flux_at`, of the volumes that have scattered light.
+pub(crate) fn scattered_module(scattered: &[bool], first: usize) -> (&'static str, String) {
+    let mut text = String::new();
+    let (mut fluence, mut flux) = (String::new(), String::new());
+    let mut binding = first;
+    for (index, _) in scattered.iter().enumerate().filter(|(_, scattered)| **scattered) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "@group(0) @binding({binding}) var fluence_{index}: texture_3d<f32>;");
+        let _ = writeln!(text, "@group(0) @binding({}) var flux_{index}: texture_3d<f32>;", binding + 1);
+        for (name, cases) in [("fluence", &mut fluence), ("flux", &mut flux)] {
+            let sample = format!("textureSampleLevel({name}_{index}, linear_sampler, place, 0.0).rgb");
+            let _ = writeln!(cases, "        case {index}u: {{ return {sample}; }}");
+        }
+        binding += 2;
+    }
+    for (name, cases) in [("fluence", fluence), ("flux", flux)] {
+        let _ = write!(
+            text,
+            "fn {name}_at(volume: u32, place: vec3f) -> vec3f {{\n    switch volume {{\n{cases}        \
+             default: {{ return vec3f(0.0); }}\n    }}\n}}\n"
+        );
+    }
+    ("scattered", text)
 }
 
 /// Trilinear interpolation with eight loads, clamped at the border.
@@ -368,7 +407,8 @@ fn instance(
     bricks_start: u32,
     first_sweep: u32,
 ) -> VolumeInstance {
-    let (_, loaded, classified, texture, placement, lighting, ray_cast, shading, light_volumes) = volume;
+    let (_, loaded, classified, texture, placement, lighting, ray_cast, shading, light_volumes, summed) =
+        volume;
     let eye_from_texture = view.eye_from_scene * scene_from_texture(loaded, placement, settings);
     let size = DVec3::from(loaded.data.size.map(f64::from));
     let axes = eye_from_texture.matrix3;
@@ -376,7 +416,7 @@ fn instance(
         (axes.x_axis.length() / size.x).min(axes.y_axis.length() / size.y).min(axes.z_axis.length() / size.z);
     let (low, high) = classified.domain;
     let mut lit = Lit::of(&lighting_in_force(lighting, *shading, settings));
-    if lit.kind == SCATTERS && light_volumes.is_none_or(|own| own.0.is_empty()) {
+    if [SCATTERS_ONCE, SCATTERS].contains(&lit.kind) && light_volumes.is_none_or(|own| own.0.is_empty()) {
         // Nothing arrives where there is no light.
         lit.kind = UNLIT;
     }
@@ -401,14 +441,19 @@ fn instance(
         g: lit.g,
         emission: lit.emission,
         first_sweep,
+        fluence_scale: summed.map_or(0.0, |summed| summed.scale),
+        axes: DMat3::from_cols(axes.x_axis.normalize(), axes.y_axis.normalize(), axes.z_axis.normalize())
+            .transpose()
+            .as_mat3(),
     }
 }
 
 /// Kinds of lighting, as the shader knows them.
 const EMITS: u32 = 0;
 const GRADIENT: u32 = 1;
-const SCATTERS: u32 = 2;
+const SCATTERS_ONCE: u32 = 2;
 const UNLIT: u32 = 3;
+const SCATTERS: u32 = 4;
 
 /// A lighting as the shader knows it.
 #[derive(Default)]
@@ -429,7 +474,9 @@ impl Lit {
             VolumeLighting::Gradient { ambient, diffuse, specular, shininess } => {
                 Self { kind: GRADIENT, ambient, diffuse, specular, shininess, ..Default::default() }
             }
-            VolumeLighting::SingleScattering { g, .. } => Self { kind: SCATTERS, g, ..Default::default() },
+            VolumeLighting::SingleScattering { g, .. } => {
+                Self { kind: SCATTERS_ONCE, g, ..Default::default() }
+            }
             VolumeLighting::LightVolume { g, emission, gradient_specular, .. } => {
                 let shininess = GRADIENT_SHININESS;
                 Self {
@@ -487,6 +534,11 @@ fn draw(
     let light_volumes = light_volumes(volumes);
     let (sweeps, repeating) = (lookup::sweeps(gpu, &light_volumes), lookup::sampler(gpu));
     resources.extend(lookup::resources(&light_volumes, &sweeps, &repeating));
+    for summed in volumes.iter().filter_map(|volume| volume.9) {
+        resources.extend(
+            [&summed.fluence, &summed.flux].map(|grid| wgpu::BindingResource::TextureView(&grid.view)),
+        );
+    }
     draw.cover(gpu, &resources, &target.view, timing);
 }
 

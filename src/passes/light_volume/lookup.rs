@@ -13,8 +13,8 @@ pub(crate) fn filtering(gpu: &Gpu) -> Filtering {
     }
 }
 
-/// The module `light_volumes` of a shader that looks up `count` light volumes: `light_left(index, place)` is the share of the light that
-/// arrives. Its bindings, from `first` on: the sweeps, a sampler, and one texture each; none at all for none.
+/// The module `light_volumes` of a shader that looks up `count` light volumes: `light_depth(index, place)` is the optical depth
+/// towards the light, `light_left` the share of it that arrives. Its bindings, from `first` on: the sweeps, a sampler, and one texture each; none at all for none.
 pub(crate) fn light_volumes_module(
     count: usize,
     filtering: Filtering,
@@ -22,7 +22,7 @@ pub(crate) fn light_volumes_module(
 ) -> (&'static str, String) {
     if count == 0 {
         let none =
-            "const SWEEPS = 0u;\nfn light_left(index: u32, place: vec3f) -> f32 {\n    return 1.0;\n}\n";
+            "const SWEEPS = 0u;\nfn light_depth(index: u32, place: vec3f) -> f32 {\n    return 0.0;\n}\n";
         return ("light_volumes", none.into());
     }
     let mut text = format!(
@@ -47,12 +47,15 @@ pub(crate) fn light_volumes_module(
     }
     let _ = write!(
         text,
-        "fn light_left(index: u32, place: vec3f) -> f32 {{
+        "fn light_depth(index: u32, place: vec3f) -> f32 {{
     let sweep = sweeps[index];
     let at = (sweep.texel_from_texture * vec4f(place, 1.0)).xyz;
     var mean = 0.0;
     switch index {{\n{cases}    }}
-    return exp(-mean * light_reach(sweep, place));
+    return mean * light_reach(sweep, place);
+}}
+fn light_left(index: u32, place: vec3f) -> f32 {{
+    return exp(-light_depth(index, place));
 }}
 "
     );

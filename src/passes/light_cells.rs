@@ -1,0 +1,183 @@
+//! The medium of a volume, as coarse as light that was scattered often is.
+//!
+//! Reads volume textures and [`Classified`]; writes [`LightCells`], rgba32float, one texel a cell: mean albedo and extinction. Reruns for a volume
+//! when its data, its transfer function or the resolution of its light changes.
+
+use super::classify::Classified;
+use super::light_volume::lighting_in_force;
+use super::light_volume::medium::Medium;
+use super::raycast::volumes_module;
+use super::upload::VolumeTexture;
+use crate::components::{SceneSettings, Shading, VolumeLighting};
+use crate::gpu::{
+    Filtering, Gpu, GpuError, Grid, Invocations, Kernel, KernelDescriptor, PassTimer, binding, uniform_buffer,
+};
+use crate::loading::LoadedVolume;
+use crate::render::Failure;
+use crate::{mirrors::mirror, report::Report};
+use bevy_ecs::change_detection::Tick;
+use bevy_ecs::prelude::*;
+use glam::UVec3;
+
+/// The cells of a volume in which light is scattered often.
+#[derive(Component, Debug)]
+pub(crate) struct LightCells {
+    /// Albedo and extinction per scene unit.
+    pub grid: Grid,
+    /// What it was made from.
+    recipe: Recipe,
+    /// Counts up whenever the texels change.
+    pub version: u64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Recipe {
+    cells: UVec3,
+    volume: wgpu::TextureView,
+    classified: Tick,
+}
+
+/// What the pass keeps between frames.
+#[derive(Resource, Default, Debug)]
+pub(crate) struct CellAverager {
+    kernels: Vec<(Filtering, Kernel)>,
+    version: u64,
+}
+
+mirror! {
+    /// Mirror of `Cells` in `shaders/light_cells.wgsl`.
+    "light_cells":
+    pub(crate) struct CellsUniform as "Cells" {
+        count: UVec3,
+        samples: UVec3,
+    }
+}
+
+/// The bindings of the kernel in front of the volume.
+const FIRST_VOLUME: usize = 6;
+
+/// Nodes of direct light to a cell of scattered light, along each axis.
+const COARSER: f64 = 4.0;
+
+/// Cells along an axis: at least so many, or the voxels there are, and at most so many.
+const FEWEST: u32 = 16;
+const MOST: u32 = 128;
+
+type Volumes<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static LoadedVolume,
+        Ref<'static, Classified>,
+        &'static VolumeTexture,
+        &'static VolumeLighting,
+        Option<&'static Shading>,
+        Option<&'static LightCells>,
+    ),
+>;
+
+pub(crate) fn run(
+    mut commands: Commands,
+    (gpu, settings): (Res<Gpu>, Res<SceneSettings>),
+    volumes: Volumes,
+    lights: Query<(), With<crate::components::DirectionalLight>>,
+    mut averager: ResMut<CellAverager>,
+    (mut timer, mut report, mut failure): (Option<ResMut<PassTimer>>, ResMut<Report>, ResMut<Failure>),
+) {
+    let mut held = 0;
+    for (entity, loaded, classified, texture, lighting, shading, kept) in &volumes {
+        let lighting = lighting_in_force(lighting, shading, &settings);
+        let VolumeLighting::LightVolume { resolution, .. } = lighting else {
+            commands.entity(entity).remove::<LightCells>();
+            continue;
+        };
+        if lights.is_empty() {
+            commands.entity(entity).remove::<LightCells>();
+            continue;
+        }
+        let cells = UVec3::from(loaded.data.size.map(|voxels| cells_along(voxels, resolution)));
+        let recipe = Recipe { cells, volume: texture.view.clone(), classified: classified.last_changed() };
+        if let Some(kept) = kept.filter(|kept| kept.recipe == recipe) {
+            held += kept.grid.bytes();
+            continue;
+        }
+        let timing = timer.as_mut().and_then(|timer| timer.time_compute("light_cells"));
+        let volume = (loaded, &*classified, texture);
+        match make(&gpu, &mut averager, volume, cells, timing, &mut report) {
+            Ok(grid) => {
+                averager.version += 1;
+                held += grid.bytes();
+                commands.entity(entity).insert(LightCells { grid, recipe, version: averager.version });
+            }
+            Err(error) => failure.keep(Err(error)),
+        }
+    }
+    report.hold("light_cells", held);
+}
+
+fn cells_along(voxels: u32, resolution: f32) -> u32 {
+    let wanted = (f64::from(voxels) * f64::from(resolution) / COARSER).ceil() as u32;
+    wanted.clamp(voxels.min(FEWEST), MOST)
+}
+
+fn make(
+    gpu: &Gpu,
+    averager: &mut CellAverager,
+    (loaded, classified, texture): (&LoadedVolume, &Classified, &VolumeTexture),
+    cells: UVec3,
+    timing: Option<wgpu::ComputePassTimestampWrites>,
+    report: &mut Report,
+) -> Result<Grid, GpuError> {
+    let filtering = texture.format.filtering;
+    let grid = Grid::new(gpu, "light cells", cells, wgpu::TextureFormat::Rgba32Float)?;
+    // Every other voxel, with its neighbours by interpolation.
+    let voxels = UVec3::from(loaded.data.size).as_vec3() / cells.as_vec3();
+    let samples = (voxels / 2.0).ceil().as_uvec3().clamp(UVec3::ONE, UVec3::splat(16));
+    let uniform = uniform_buffer(gpu, "cells", &CellsUniform { count: cells, samples });
+    let medium = Medium::new(gpu, loaded, classified, texture);
+    let mut resources = medium.resources();
+    resources.extend([
+        uniform.as_entire_binding(),
+        wgpu::BindingResource::TextureView(&grid.view),
+        wgpu::BindingResource::TextureView(&texture.view),
+    ]);
+    let kernel = averager.kernel(gpu, filtering, report)?;
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    kernel.run(gpu, &mut encoder, &resources, Invocations::Count(cells.element_product()), timing);
+    gpu.queue.submit([encoder.finish()]);
+    let samples = u64::from(cells.element_product()) * u64::from(samples.element_product());
+    report.ran("light_cells", &[("cells", u64::from(cells.element_product())), ("samples", samples)]);
+    Ok(grid)
+}
+
+impl CellAverager {
+    /// The kernel, made when it is first asked for.
+    fn kernel(&mut self, gpu: &Gpu, filtering: Filtering, report: &mut Report) -> Result<&Kernel, GpuError> {
+        let known = self.kernels.iter().position(|(made_for, _)| *made_for == filtering);
+        let index = match known {
+            Some(index) => index,
+            None => {
+                let mut bindings = Medium::BINDINGS.to_vec();
+                bindings.extend([
+                    binding::UNIFORM,
+                    binding::grid_out(wgpu::TextureFormat::Rgba32Float),
+                    binding::texture(wgpu::TextureViewDimension::D3, filtering == Filtering::Sampler),
+                ]);
+                let kernel = Kernel::new(
+                    gpu,
+                    &KernelDescriptor {
+                        name: "light_cells",
+                        generated: &[("volumes", volumes_module(&[filtering], false, FIRST_VOLUME))],
+                        entry_point: "average",
+                        bindings: &bindings,
+                    },
+                )?;
+                report.pipelines.push("light_cells");
+                self.kernels.push((filtering, kernel));
+                self.kernels.len() - 1
+            }
+        };
+        Ok(&self.kernels[index].1)
+    }
+}

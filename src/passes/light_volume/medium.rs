@@ -1,0 +1,82 @@
+//! The medium of a volume as kernels that sweep it read it: see `shaders/shared/classified.wgsl`.
+
+use crate::gpu::{Gpu, binding, texture_of, uniform_buffer};
+use crate::loading::LoadedVolume;
+use crate::mirrors::mirror;
+use crate::passes::classify::Classified;
+use crate::passes::raycast::BRICK_ROW;
+use crate::passes::upload::{SENTINEL_THRESHOLD, VolumeTexture};
+use glam::{UVec2, UVec3, Vec3};
+
+mirror! {
+    /// Mirror of `Classified` in `shaders/shared/classified.wgsl`.
+    "light_volume":
+    pub(crate) struct ClassifiedUniform as "Classified" {
+        lookup_scale: f32,
+        lookup_offset: f32,
+        last: f32,
+        sentinel: f32,
+        size: Vec3,
+        bricks: UVec3,
+    }
+}
+
+/// Its buffers, for the first bindings of a kernel.
+pub(crate) struct Medium {
+    uniform: wgpu::Buffer,
+    table: wgpu::TextureView,
+    bricks: wgpu::TextureView,
+    sampler: wgpu::Sampler,
+}
+
+impl Medium {
+    /// The bindings of `classified.wgsl`, from 0.
+    pub const BINDINGS: [wgpu::BindingType; 4] =
+        [binding::UNIFORM, binding::TEXTURE, binding::INTEGERS, binding::SAMPLER];
+
+    /// What a transfer function makes of a volume.
+    pub fn new(gpu: &Gpu, loaded: &LoadedVolume, classified: &Classified, texture: &VolumeTexture) -> Self {
+        let (low, high) = classified.domain;
+        let entries = &classified.table.entries;
+        let uniform = ClassifiedUniform {
+            lookup_scale: texture.format.scale / (high - low),
+            lookup_offset: (texture.format.offset - low) / (high - low),
+            last: (entries.len() - 1) as f32,
+            sentinel: SENTINEL_THRESHOLD,
+            size: UVec3::from(loaded.data.size).as_vec3(),
+            bricks: UVec3::from(classified.bricks),
+        };
+        let table_size = UVec2::new(entries.len() as u32, 1);
+        let format = wgpu::TextureFormat::Rgba32Float;
+        let table = texture_of(gpu, "lookup table", table_size, format, bytemuck::cast_slice(entries));
+        Self {
+            uniform: uniform_buffer(gpu, "classified", &uniform),
+            table: table.create_view(&Default::default()),
+            bricks: brick_texture(gpu, &classified.distances).create_view(&Default::default()),
+            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("linear"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            }),
+        }
+    }
+
+    /// The resources of those bindings.
+    pub fn resources(&self) -> Vec<wgpu::BindingResource<'_>> {
+        vec![
+            self.uniform.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&self.table),
+            wgpu::BindingResource::TextureView(&self.bricks),
+            wgpu::BindingResource::Sampler(&self.sampler),
+        ]
+    }
+}
+
+/// The distances of bricks in rows.
+fn brick_texture(gpu: &Gpu, distances: &[u8]) -> wgpu::Texture {
+    let mut rows = distances.to_vec();
+    rows.resize(rows.len().next_multiple_of(BRICK_ROW as usize), 0);
+    let size = UVec2::new(BRICK_ROW, (rows.len() / BRICK_ROW as usize) as u32);
+    texture_of(gpu, "brick distances", size, wgpu::TextureFormat::R8Uint, &rows)
+}

@@ -1,0 +1,315 @@
+//! Light that was scattered before, in the cells of a volume: sweeps away from each light and back.
+//!
+//! Reads [`LightCells`] and [`LightVolumes`]; writes [`ScatteredLight`]: for each light and cell a vec4f of the fluence and one of the flux along the
+//! volume's axes, for an irradiance of 1. Each axis that the light leans to is swept, the more it counts the more the light follows it (counted
+//! in cells), so that nothing jumps where the nearest axis changes. Reruns when what it reads changes, or the cone of the lighting.
+
+use super::light_cells::LightCells;
+use super::light_volume::lookup;
+use super::light_volume::{LightVolume, LightVolumes, lighting_in_force, scene_from_texture};
+use crate::components::{Auto, Placement, SceneSettings, Shading, VolumeLighting};
+use crate::gpu::{
+    Gpu, GpuError, Kernel, KernelDescriptor, PassTimer, binding, storage, uniform_buffer, uniform_each,
+};
+use crate::loading::LoadedVolume;
+use crate::optics::two_stream::MU1;
+use crate::render::Failure;
+use crate::{mirrors::mirror, report::Report};
+use bevy_ecs::prelude::*;
+use encase::ShaderSize;
+use glam::{DAffine3, DVec3, UVec3, Vec2};
+
+/// What each light scatters into the cells of a volume, in the order of the lights.
+#[derive(Component, Debug, Default)]
+pub(crate) struct ScatteredLight(pub Vec<ScatteredLayer>);
+
+/// One light's part.
+#[derive(Debug)]
+pub(crate) struct ScatteredLayer {
+    /// The light.
+    pub light: Entity,
+    /// Fluence and flux of each cell.
+    pub cells: wgpu::Buffer,
+    recipe: Recipe,
+    /// Counts up whenever the cells change.
+    pub version: u64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Recipe {
+    cells: u64,
+    light_volume: u64,
+    sweeps: Vec<AxisSweep>,
+}
+
+/// One axis of a light's sweeps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct AxisSweep {
+    cells: UVec3,
+    axis: usize,
+    forwards: bool,
+    /// Lengths of a cell, scene units.
+    lengths: DVec3,
+    mu0: f64,
+    g: f32,
+    weight: f64,
+    /// The width of the cone, as a multiple of what light does.
+    width: f64,
+}
+
+/// What the pass keeps between frames.
+#[derive(Resource, Default, Debug)]
+pub(crate) struct Scatterer {
+    kernels: Option<[Kernel; 2]>,
+    version: u64,
+}
+
+mirror! {
+    /// Mirror of `ScatterSweep` in `shaders/scattered_light.wgsl`.
+    "scattered_light":
+    pub(crate) struct ScatterSweepUniform as "ScatterSweep" {
+        cells: UVec3,
+        axis: u32,
+        across: Vec2,
+        along: f32,
+        mu0: f32,
+        g: f32,
+        weight: f32,
+        flux_weight: f32,
+        forwards: u32,
+        spread: f32,
+    }
+}
+
+mirror! {
+    /// Mirror of `Slice` in `shaders/scattered_light.wgsl`.
+    "scattered_light":
+    pub(crate) struct SliceUniform as "Slice" {
+        index: u32,
+    }
+}
+
+/// The bindings of the kernels in front of those of the light volume.
+const FIXED_BINDINGS: usize = 6;
+
+/// An axis that counts for less is not swept.
+const LEAST_WEIGHT: f64 = 0.002;
+
+/// The weight of an axis from which on its flux counts by half.
+const HALF_FLUX: f64 = 0.02;
+
+impl AxisSweep {
+    /// The sweeps for light that travels in a direction, given in the texture's space.
+    fn all(
+        lighting: &VolumeLighting,
+        cells: UVec3,
+        direction: DVec3,
+        scene_from_texture: DAffine3,
+    ) -> Vec<Self> {
+        let VolumeLighting::LightVolume { cone_angle, blend, g, .. } = *lighting else { return Vec::new() };
+        let in_cells = direction * cells.as_dvec3();
+        let nearest = in_cells.abs().max_position();
+        let shares = in_cells * in_cells / in_cells.length_squared();
+        let counts = |axis: usize| match blend {
+            true => shares[axis] > LEAST_WEIGHT,
+            false => axis == nearest,
+        };
+        let total: f64 = (0..3).filter(|axis| counts(*axis)).map(|axis| shares[axis]).sum();
+        let axes = scene_from_texture.matrix3;
+        let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
+        let light = scene_from_texture.transform_vector3(direction).normalize();
+        let width = match cone_angle {
+            Auto::Auto => 1.0,
+            Auto::Value(angle) => f64::from(angle).to_radians().tan() / MU1.acos().tan(),
+        };
+        let sweep = |axis: usize| Self {
+            cells,
+            axis,
+            forwards: direction[axis] >= 0.0,
+            lengths: DVec3::from_array([0, 1, 2].map(|axis| axes[axis].length() / f64::from(cells[axis]))),
+            mu0: light.dot(axes[axis].normalize()).abs(),
+            g,
+            weight: shares[axis] / total,
+            width,
+        };
+        (0..3).filter(|axis| counts(*axis)).map(sweep).collect()
+    }
+
+    /// Cells across and along.
+    fn extent(&self) -> UVec3 {
+        let [b, c] = [(self.axis + 1) % 3, (self.axis + 2) % 3];
+        UVec3::new(self.cells[b], self.cells[c], self.cells[self.axis])
+    }
+
+    fn uniform(&self) -> ScatterSweepUniform {
+        let [b, c] = [(self.axis + 1) % 3, (self.axis + 2) % 3];
+        ScatterSweepUniform {
+            cells: self.cells,
+            axis: self.axis as u32,
+            across: glam::DVec2::new(self.lengths[b], self.lengths[c]).as_vec2(),
+            along: self.lengths[self.axis] as f32,
+            mu0: self.mu0 as f32,
+            g: self.g,
+            weight: self.weight as f32,
+            flux_weight: (self.weight / (self.weight + HALF_FLUX)) as f32,
+            forwards: u32::from(self.forwards),
+            spread: (2.0 / (3.0 * MU1) * self.width * self.width) as f32,
+        }
+    }
+}
+
+type Volumes<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static LoadedVolume,
+        &'static Placement,
+        &'static VolumeLighting,
+        Option<&'static Shading>,
+        &'static LightCells,
+        &'static LightVolumes,
+        Option<&'static mut ScatteredLight>,
+    ),
+>;
+
+pub(crate) fn run(
+    mut commands: Commands,
+    (gpu, settings): (Res<Gpu>, Res<SceneSettings>),
+    mut volumes: Volumes,
+    former: Query<Entity, (With<ScatteredLight>, Without<LightCells>)>,
+    mut scatterer: ResMut<Scatterer>,
+    (mut timer, mut report, mut failure): (Option<ResMut<PassTimer>>, ResMut<Report>, ResMut<Failure>),
+) {
+    for entity in &former {
+        commands.entity(entity).remove::<ScatteredLight>();
+    }
+    let mut held = 0;
+    for (entity, loaded, placement, lighting, shading, cells, light_volumes, mut kept) in &mut volumes {
+        let lighting = lighting_in_force(lighting, shading, &settings);
+        let scene_from_texture = scene_from_texture(loaded, placement, &settings);
+        let mut own = ScatteredLight::default();
+        let all = kept.as_mut().map_or(&mut own, |kept| kept.bypass_change_detection());
+        let mut old = std::mem::take(&mut all.0);
+        for light_volume in &light_volumes.0 {
+            let direction = light_volume.sweep.step();
+            let sweeps = AxisSweep::all(&lighting, cells.grid.size(), direction, scene_from_texture);
+            let recipe = Recipe { cells: cells.version, light_volume: light_volume.version, sweeps };
+            let found = old.iter().position(|layer| layer.light == light_volume.light);
+            let found = found.map(|index| old.swap_remove(index)).filter(|found| found.recipe == recipe);
+            if let Some(found) = found {
+                held += found.cells.size();
+                all.0.push(found);
+                continue;
+            }
+            match scatter(
+                &gpu,
+                &mut scatterer,
+                cells,
+                light_volume,
+                &recipe,
+                timer.as_deref_mut(),
+                &mut report,
+            ) {
+                Ok(buffer) => {
+                    scatterer.version += 1;
+                    held += buffer.size();
+                    let (light, version) = (light_volume.light, scatterer.version);
+                    all.0.push(ScatteredLayer { light, cells: buffer, recipe, version });
+                }
+                Err(error) => failure.keep(Err(error)),
+            }
+        }
+        if kept.is_none() {
+            commands.entity(entity).insert(own);
+        }
+    }
+    report.hold("scattered_light", held);
+}
+
+fn scatter(
+    gpu: &Gpu,
+    scatterer: &mut Scatterer,
+    cells: &LightCells,
+    light_volume: &LightVolume,
+    recipe: &Recipe,
+    mut timer: Option<&mut PassTimer>,
+    report: &mut Report,
+) -> Result<wgpu::Buffer, GpuError> {
+    let [forward, back] = scatterer.kernels(gpu, report)?;
+    let size = cells.grid.size();
+    let count = u64::from(size.element_product());
+    let widest = recipe.sweeps.iter().map(|sweep| sweep.extent().truncate().element_product()).max();
+    let scattered = storage(gpu, "scattered light", 32 * count);
+    let stacks = storage(gpu, "stacks", 48 * count);
+    let faces = storage(gpu, "faces", 64 * u64::from(widest.unwrap_or(1)));
+    let indices: Vec<_> = (0..size.max_element()).map(|index| SliceUniform { index }).collect();
+    let (slices, stride) = uniform_each(gpu, "slices", &indices);
+    let slice = wgpu::BufferBinding {
+        buffer: &slices,
+        offset: 0,
+        size: std::num::NonZeroU64::new(SliceUniform::SHADER_SIZE.get()),
+    };
+    let light_volumes = [light_volume];
+    let (sweeps, sampler) = (lookup::sweeps(gpu, &light_volumes), lookup::sampler(gpu));
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    for sweep in &recipe.sweeps {
+        let uniform = uniform_buffer(gpu, "scatter sweep", &sweep.uniform());
+        let mut resources = vec![
+            uniform.as_entire_binding(),
+            wgpu::BindingResource::Buffer(slice.clone()),
+            wgpu::BindingResource::TextureView(&cells.grid.view),
+            stacks.as_entire_binding(),
+            faces.as_entire_binding(),
+            scattered.as_entire_binding(),
+        ];
+        resources.extend(lookup::resources(&light_volumes, &sweeps, &sampler));
+        let extent = sweep.extent();
+        let columns = extent.x * extent.y;
+        let away = (0..extent.z).map(|slice| slice * stride);
+        let timing = timer.as_deref_mut().and_then(|timer| timer.time_compute("scattered_light"));
+        forward.sweep(gpu, &mut encoder, &resources, columns, away.clone(), timing);
+        let timing = timer.as_deref_mut().and_then(|timer| timer.time_compute("scattered_light"));
+        back.sweep(gpu, &mut encoder, &resources, columns, away.rev(), timing);
+        report.ran("scattered_light", &[("cells", count)]);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    Ok(scattered)
+}
+
+impl Scatterer {
+    /// The kernels of the sweeps away from the light and back, made when they are first asked for.
+    fn kernels(&mut self, gpu: &Gpu, report: &mut Report) -> Result<&[Kernel; 2], GpuError> {
+        let kernels = match self.kernels.take() {
+            Some(kernels) => kernels,
+            None => {
+                report.pipelines.extend(["scattered_light"; 2]);
+                [make(gpu, "forward")?, make(gpu, "back")?]
+            }
+        };
+        Ok(self.kernels.insert(kernels))
+    }
+}
+
+fn make(gpu: &Gpu, entry_point: &str) -> Result<Kernel, GpuError> {
+    let filtering = lookup::filtering(gpu);
+    let mut bindings = vec![
+        binding::UNIFORM,
+        binding::UNIFORM_EACH,
+        binding::texture(wgpu::TextureViewDimension::D3, false),
+        binding::STORAGE_OUT,
+        binding::STORAGE_OUT,
+        binding::STORAGE_OUT,
+    ];
+    bindings.extend(lookup::bindings(1, filtering));
+    let generated = [lookup::light_volumes_module(1, filtering, FIXED_BINDINGS)];
+    Kernel::new(
+        gpu,
+        &KernelDescriptor {
+            name: "scattered_light",
+            generated: &generated,
+            entry_point,
+            bindings: &bindings,
+        },
+    )
+}

@@ -1,0 +1,160 @@
+//! Scattered light of all lights together, as the ray caster looks it up.
+//!
+//! Reads [`ScatteredLight`] and the irradiance of the lights; writes [`SummedLight`], rgba16float, one texel a cell: the fluence, and for media
+//! that do not scatter evenly the flux. Reruns when either changes; a light's colour changes nothing before this pass.
+
+use super::light_cells::LightCells;
+use super::light_volume::lighting_in_force;
+use super::scattered_light::ScatteredLight;
+use crate::components::{DirectionalLight, SceneSettings, Shading, VolumeLighting};
+use crate::gpu::{
+    Gpu, GpuError, Grid, Invocations, Kernel, KernelDescriptor, PassTimer, binding, storage, storage_of,
+    uniform_buffer,
+};
+use crate::render::Failure;
+use crate::{mirrors::mirror, report::Report};
+use bevy_ecs::prelude::*;
+use glam::{UVec3, Vec3, Vec4};
+
+/// The scattered light in the cells of a volume.
+#[derive(Component, Debug)]
+pub(crate) struct SummedLight {
+    /// Fluence, as a share of `scale`.
+    pub fluence: Grid,
+    /// Flux along the axes of the volume, as a share of the mean fluence; one texel where nobody asks for it.
+    pub flux: Grid,
+    /// Greatest irradiance of a light.
+    pub scale: f32,
+    made: (Vec<u64>, Vec<Vec3>, bool),
+}
+
+mirror! {
+    /// Mirror of `Summation` in `shaders/summed_light.wgsl`.
+    "summed_light":
+    pub(crate) struct SummationUniform as "Summation" {
+        cells: UVec3,
+        lights: u32,
+    }
+}
+
+/// What the pass keeps between frames.
+#[derive(Resource, Default, Debug)]
+pub(crate) struct Adder {
+    kernel: Option<Kernel>,
+}
+
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+type Volumes<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static VolumeLighting,
+        Option<&'static Shading>,
+        &'static LightCells,
+        &'static ScatteredLight,
+        Option<&'static SummedLight>,
+    ),
+>;
+
+pub(crate) fn run(
+    mut commands: Commands,
+    (gpu, settings): (Res<Gpu>, Res<SceneSettings>),
+    volumes: Volumes,
+    former: Query<Entity, (With<SummedLight>, Without<LightCells>)>,
+    lights: Query<&DirectionalLight>,
+    mut adder: ResMut<Adder>,
+    (mut timer, mut report, mut failure): (Option<ResMut<PassTimer>>, ResMut<Report>, ResMut<Failure>),
+) {
+    for entity in &former {
+        commands.entity(entity).remove::<SummedLight>();
+    }
+    let mut held = 0;
+    for (entity, lighting, shading, cells, scattered, kept) in &volumes {
+        let irradiance = |light| lights.get(light).map_or(Vec3::ZERO, |light| light.irradiance);
+        let irradiances: Vec<Vec3> = scattered.0.iter().map(|layer| irradiance(layer.light)).collect();
+        let versions: Vec<u64> = scattered.0.iter().map(|layer| layer.version).collect();
+        let lighting = lighting_in_force(lighting, shading, &settings);
+        let leans = matches!(lighting, VolumeLighting::LightVolume { g, .. } if g != 0.0);
+        let made = (versions, irradiances, leans);
+        if let Some(kept) = kept.filter(|kept| kept.made == made) {
+            held += kept.fluence.bytes() + kept.flux.bytes();
+            continue;
+        }
+        let timing = timer.as_mut().and_then(|timer| timer.time_compute("summed_light"));
+        match sum(&gpu, &mut adder, cells.grid.size(), scattered, made, timing, &mut report) {
+            Ok(summed) => {
+                held += summed.fluence.bytes() + summed.flux.bytes();
+                commands.entity(entity).insert(summed);
+            }
+            Err(error) => failure.keep(Err(error)),
+        }
+    }
+    report.hold("summed_light", held);
+}
+
+fn sum(
+    gpu: &Gpu,
+    adder: &mut Adder,
+    cells: UVec3,
+    scattered: &ScatteredLight,
+    made: (Vec<u64>, Vec<Vec3>, bool),
+    timing: Option<wgpu::ComputePassTimestampWrites>,
+    report: &mut Report,
+) -> Result<SummedLight, GpuError> {
+    if adder.kernel.is_none() {
+        adder.kernel = Some(make(gpu)?);
+        report.pipelines.push("summed_light");
+    }
+    let (_, irradiances, leans) = &made;
+    let scale = irradiances.iter().map(|irradiance| irradiance.max_element()).fold(0.0, f32::max);
+    let fluence = Grid::new(gpu, "fluence", cells, FORMAT)?;
+    let flux = Grid::new(gpu, "flux", if *leans { cells } else { UVec3::ONE }, FORMAT)?;
+    let mut factors: Vec<Vec4> = irradiances
+        .iter()
+        .map(|irradiance| (*irradiance / scale.max(f32::MIN_POSITIVE)).extend(0.0))
+        .collect();
+    // A buffer cannot be empty.
+    factors.push(Vec4::ZERO);
+    let factors = storage_of(gpu, "irradiances", bytemuck::cast_slice(&factors));
+    let count = u64::from(cells.element_product());
+    let layers = storage(gpu, "layers of lights", 32 * count * scattered.0.len().max(1) as u64);
+    let uniform = SummationUniform { cells, lights: irradiances.len() as u32 };
+    let uniform = uniform_buffer(gpu, "summation", &uniform);
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    for (index, layer) in scattered.0.iter().enumerate() {
+        encoder.copy_buffer_to_buffer(&layer.cells, 0, &layers, 32 * count * index as u64, 32 * count);
+    }
+    let resources = [
+        uniform.as_entire_binding(),
+        factors.as_entire_binding(),
+        layers.as_entire_binding(),
+        wgpu::BindingResource::TextureView(&fluence.view),
+        wgpu::BindingResource::TextureView(&flux.view),
+    ];
+    if let Some(kernel) = &adder.kernel {
+        kernel.run(gpu, &mut encoder, &resources, Invocations::Count(count as u32), timing);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    report.ran("summed_light", &[("cells", count)]);
+    Ok(SummedLight { fluence, flux, scale, made })
+}
+
+fn make(gpu: &Gpu) -> Result<Kernel, GpuError> {
+    Kernel::new(
+        gpu,
+        &KernelDescriptor {
+            name: "summed_light",
+            generated: &[],
+            entry_point: "add_up",
+            bindings: &[
+                binding::UNIFORM,
+                binding::STORAGE,
+                binding::STORAGE,
+                binding::grid_out(FORMAT),
+                binding::grid_out(FORMAT),
+            ],
+        },
+    )
+}
