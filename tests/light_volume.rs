@@ -158,3 +158,57 @@ fn light_in_a_block_is_exact_to_its_edges_at_every_resolution() {
     eprintln!("worst error, as a share of the brightest pixel: {worst:?}");
     assert!(worst.0 < 4e-3, "{worst:?}");
 }
+
+/// Nodes and weights of Gauss and Legendre on 0..1.
+const GAUSS: [(f64, f64); 6] = [
+    (0.033_765_242_898_423_99, 0.085_662_246_189_585_18),
+    (0.169_395_306_766_867_75, 0.180_380_786_524_069_3),
+    (0.380_690_406_958_401_56, 0.233_956_967_286_345_5),
+    (0.619_309_593_041_598_4, 0.233_956_967_286_345_5),
+    (0.830_604_693_233_132_2, 0.180_380_786_524_069_3),
+    (0.966_234_757_101_576, 0.085_662_246_189_585_18),
+];
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn slabs_reflect_and_transmit_what_they_should() {
+    let cases: serde_json::Value = serde_json::from_str(include_str!("truth/slab.json")).unwrap();
+    let mut studio = Studio::new();
+    let mut rows = Vec::new();
+    for case in cases["cases"].as_array().unwrap() {
+        let number = |name: &str| case[name].as_f64().unwrap();
+        let (tau, albedo, mu0) = (number("tau"), number("albedo"), number("mu0"));
+        // A peak forwards wants more directions than these; `optics::two_stream` is tested with it.
+        if ![0.5, 2.0, 10.0].contains(&tau) || albedo < 0.5 || number("g") > 0.5 {
+            continue;
+        }
+        let sine0 = (1.0 - mu0 * mu0).sqrt();
+        let lighting = format!("LightVolume(g: {:?})", number("g").clamp(-0.999, 0.999));
+        let slab = slab(&studio, 128, tau, albedo, &lighting);
+        let mut fluxes = [0.0; 2];
+        for (flux, side) in fluxes.iter_mut().zip([1.0, -1.0]) {
+            for (mu, weight) in GAUSS {
+                let sine = (1.0 - mu * mu).sqrt();
+                let turns = if mu0 == 1.0 { 1 } else { 6 };
+                for turn in 0..turns {
+                    let phi = std::f64::consts::PI * (f64::from(turn) + 0.5) / f64::from(turns);
+                    let scene = format!(
+                        "(entities: {{ {} {slab} \"light\": ( DirectionalLight: (direction: ({sine0:?}, 0.0, {:?})) ) }})",
+                        eye([sine * phi.cos(), sine * phi.sin(), side * mu]),
+                        -mu0
+                    );
+                    let seen = f64::from(middle(&studio.radiance(&scene, 1, 1))[0]);
+                    *flux += std::f64::consts::TAU * weight * mu * seen / f64::from(turns) / mu0;
+                }
+            }
+        }
+        rows.push((number("R"), number("T_scattered"), fluxes, format!("tau {tau} albedo {albedo} g {} mu0 {mu0}", number("g"))));
+    }
+    let mean = |error: &dyn Fn(&(f64, f64, [f64; 2], String)) -> f64| rows.iter().map(error).sum::<f64>() / rows.len() as f64;
+    for (r, t, [seen_r, seen_t], name) in &rows {
+        eprintln!("{name}: R {seen_r:.4} of {r:.4} ({:+.1} %), T {seen_t:.4} of {t:.4} ({:+.1} %)", 100.0 * (seen_r / r - 1.0), 100.0 * (seen_t / t - 1.0));
+    }
+    let errors = [mean(&|row| (row.2[0] / row.0 - 1.0).abs()), mean(&|row| (row.2[1] / row.1 - 1.0).abs())];
+    eprintln!("mean relative errors of reflectance and scattered transmittance: {errors:?}");
+    assert!(errors[0] < 0.06 && errors[1] < 0.1, "{errors:?}");
+}
