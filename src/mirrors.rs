@@ -59,17 +59,20 @@ pub fn all() -> Vec<Mirror> {
         passes::scattered_radiosity::EstimatorUniform::mirror(),
         passes::combine::CombinationUniform::mirror(),
         passes::surface::MeshInstance::mirror(),
+        passes::preclassify::VoxelsUniform::mirror(),
         passes::raycast::VolumeInstance::mirror(),
         passes::tonemap::DisplayUniform::mirror(),
     ]
 }
 
 /// The modules of shaders that are made as the scene needs them, for one that needs all variants: two volumes, of which the sampler
-/// interpolates one and the shader the other.
+/// interpolates one and the shader the other, and which are classified in different ways.
 pub fn generated_modules() -> Vec<(&'static str, String)> {
+    use crate::components::Classification::{Pre, PreIntegrated};
     use crate::gpu::Filtering::{Sampler, Shader};
     vec![
         ("volumes", passes::raycast::volumes_module(&[Sampler, Shader], true)),
+        passes::raycast::classifications_module(&[Pre, PreIntegrated]),
         view::lights_module(4),
         passes::scattered_radiosity::sampling_module(&Default::default(), 5),
         passes::scattered_radiosity::listing_module(false),

@@ -16,6 +16,7 @@ fn shaders() -> Vec<(&'static str, naga::Module, String)> {
         "scattered_radiosity",
         "combine",
         "surface",
+        "preclassify",
         "raycast",
         "tonemap",
     ]

@@ -15,6 +15,7 @@ macro_rules! sources {
 
 sources! {
     "bssrdf" => "shared/bssrdf.wgsl",
+    "classify" => "shared/classify.wgsl",
     "combine" => "combine.wgsl",
     "estimator" => "shared/estimator.wgsl",
     "frame" => "shared/frame.wgsl",
@@ -24,6 +25,7 @@ sources! {
     "gbuffer" => "gbuffer.wgsl",
     "maps" => "shared/maps.wgsl",
     "phase" => "shared/phase.wgsl",
+    "preclassify" => "preclassify.wgsl",
     "raycast" => "raycast.wgsl",
     "sampling_adaptive" => "shared/sampling_adaptive.wgsl",
     "sampling_uniform" => "shared/sampling_uniform.wgsl",

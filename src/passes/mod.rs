@@ -1,11 +1,14 @@
 //! Stale products become textures, and textures a picture. One file a pass, in the order in which they run.
 
 pub(crate) mod body;
+pub(crate) mod classification;
 pub mod classify;
 pub mod combine;
 pub mod gbuffer;
 pub mod light_gbuffer;
 pub mod medium;
+pub mod preclassify;
+pub mod preintegrate;
 pub mod raycast;
 pub mod scattered_radiosity;
 pub mod scattering_gbuffer;

@@ -4,10 +4,15 @@
 //! pixel: radiance, and how many samples it took. Runs each frame in which a volume is there. The shader is made for the number of volumes,
 //! since each needs a texture binding of its own: their number is limited by what the adapter can bind at once.
 
+use super::classification;
 use super::classify::{Classified, classify};
+use super::preclassify::{ClassifiedVoxels, Preclassifier, preclassify};
+use super::preintegrate::{PreintegratedPairs, preintegrate};
 use super::surface::Surface;
 use super::upload::{SENTINEL_THRESHOLD, VolumeTexture, VolumeUploadPlugin};
-use crate::components::{Placement, RayCast as RayCastSettings, SceneSettings, VolumeLighting};
+use crate::components::{
+    Classification, Placement, RayCast as RayCastSettings, SceneSettings, VolumeLighting,
+};
 use crate::gpu::{
     Draw, DrawDescriptor, Filtering, Gpu, GpuError, PassTimer, Target, binding, texture_of, uniform_array,
 };
@@ -27,8 +32,9 @@ pub(crate) struct RayCastPlugin;
 
 impl Plugin for RayCastPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<RayCaster>().add_plugins(VolumeUploadPlugin);
-        app.add_systems(Update, classify.in_set(Stage::Classify))
+        app.init_resource::<RayCaster>().init_resource::<Preclassifier>().add_plugins(VolumeUploadPlugin);
+        let classifying = (preintegrate, preclassify).run_if(resource_exists::<Gpu>);
+        app.add_systems(Update, (classify, classifying).chain().in_set(Stage::Classify))
             .add_systems(Update, run.in_set(Stage::RayCast).run_if(resource_exists::<Gpu>));
     }
 }
@@ -55,6 +61,8 @@ impl RayCaster {
 struct Variant {
     /// One for each volume.
     filtering: Vec<Filtering>,
+    /// One for each volume.
+    classifications: Vec<Classification>,
     light_capacity: usize,
     /// Whether any volume is lit by its gradient, which costs more than the rest together.
     any_lit: bool,
@@ -96,6 +104,9 @@ mirror! {
         shininess: f32,
         sentinel: f32,
         reach: f32,
+        classification: u32,
+        greatest_colour: f32,
+        greatest_extinction: f32,
     }
 }
 
@@ -115,6 +126,8 @@ type VolumeData<'a> = (
     &'a Placement,
     &'a VolumeLighting,
     &'a RayCastSettings,
+    Option<&'a PreintegratedPairs>,
+    Option<&'a ClassifiedVoxels>,
 );
 type Volumes<'w, 's> = Query<
     'w,
@@ -127,6 +140,8 @@ type Volumes<'w, 's> = Query<
         &'static Placement,
         &'static VolumeLighting,
         &'static RayCastSettings,
+        Option<&'static PreintegratedPairs>,
+        Option<&'static ClassifiedVoxels>,
     ),
 >;
 
@@ -147,14 +162,8 @@ fn run(
     let mut volumes: Vec<_> = volumes.iter().collect();
     volumes.sort_by_key(|volume| volume.0);
     let limit = gpu.device.limits().max_sampled_textures_per_shader_stage - OTHER_TEXTURES;
-    if volumes.len() > limit as usize {
-        let message =
-            format!("{} volumes are in the scene; this adapter can show {limit} at once", volumes.len());
-        problems.0.push(
-            Problem::error(message)
-                .help("merge volumes, or leave some out")
-                .on(volumes[limit as usize].0, "Volume"),
-        );
+    if let Some(problem) = too_many(&volumes, limit) {
+        problems.0.push(problem);
         return;
     }
     if volumes.is_empty() {
@@ -170,6 +179,33 @@ fn run(
     failure.keep(drawn);
 }
 
+/// What is told where volumes have more textures than can be bound.
+fn too_many(volumes: &[VolumeData], limit: u32) -> Option<Problem> {
+    let mut textures = 0;
+    let first = volumes.iter().position(|volume| {
+        textures += 1 + u32::from(classification_of(volume) != Classification::Post);
+        textures > limit
+    })?;
+    let textures =
+        if volumes.len() == textures as usize { String::new() } else { " textures of volumes".into() };
+    let message = format!(
+        "{} volumes are in the scene; this adapter can show {limit}{textures} at once",
+        volumes.len()
+    );
+    let help =
+        "merge volumes, leave some out, or classify them by `Post`, which takes one texture instead of two";
+    Some(Problem::error(message).help(help).on(volumes[first].0, "Volume"))
+}
+
+/// How a volume is classified: as it asks, once what that takes is there.
+fn classification_of(volume: &VolumeData) -> Classification {
+    match (volume.2.classification, volume.7, volume.8) {
+        (Classification::PreIntegrated, Some(_), _) => Classification::PreIntegrated,
+        (Classification::Pre, _, Some(_)) => Classification::Pre,
+        _ => Classification::Post,
+    }
+}
+
 /// Makes what is missing or stale: pipeline, tables, target.
 fn prepare(
     gpu: &Gpu,
@@ -181,7 +217,8 @@ fn prepare(
 ) -> Result<(), GpuError> {
     let filtering = volumes.iter().map(|volume| volume.3.format.filtering).collect();
     let any_lit = volumes.iter().any(|volume| matches!(volume.5, VolumeLighting::Gradient { .. }));
-    let variant = Variant { filtering, light_capacity, any_lit };
+    let classifications = volumes.iter().map(classification_of).collect();
+    let variant = Variant { filtering, classifications, light_capacity, any_lit };
     if caster.draw.as_ref().is_none_or(|(made_for, _)| *made_for != variant) {
         caster.draw = Some((variant.clone(), make(gpu, &variant)?));
         report.pipelines.push("raycast");
@@ -226,13 +263,15 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
         .filtering
         .iter()
         .map(|filtering| binding::texture(wgpu::TextureViewDimension::D3, *filtering == Filtering::Sampler));
-    let bindings: Vec<_> = fixed.into_iter().chain(textures).collect();
+    let classified = classification::bindings(&variant.classifications);
+    let bindings: Vec<_> = fixed.into_iter().chain(textures).chain(classified).collect();
     Draw::new(
         gpu,
         &DrawDescriptor {
             name: "raycast",
             generated: &[
                 ("volumes", volumes_module(&variant.filtering, variant.any_lit)),
+                classifications_module(&variant.classifications),
                 lights_module(variant.light_capacity),
             ],
             entry_points: ("cover", "march"),
@@ -242,6 +281,12 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
             depth: false,
         },
     )
+}
+
+/// The WGSL module `classifications`, whose textures are bound behind those of volumes.
+pub(crate) fn classifications_module(classifications: &[Classification]) -> (&'static str, String) {
+    let first_binding = FIXED_BINDINGS as usize + classifications.len();
+    ("classifications", classification::module(classifications, first_binding))
 }
 
 /// The WGSL module `volumes`: one texture binding a volume, and `texel_at(volume, place)` that interpolates in it.
@@ -333,7 +378,7 @@ fn instances(
 }
 
 fn instance(view: &View, settings: &SceneSettings, volume: &VolumeData, bricks_start: u32) -> VolumeInstance {
-    let (_, loaded, classified, texture, placement, lighting, ray_cast) = volume;
+    let (_, loaded, classified, texture, placement, lighting, ray_cast, _, voxels) = volume;
     let extent = 2.0 * loaded.half_extent().as_dvec3() / f64::from(settings.millimetres_per_unit);
     let entity_from_texture = DAffine3::from_scale(extent) * DAffine3::from_translation(DVec3::splat(-0.5));
     let eye_from_texture = view.eye_from_scene * placement.0 * entity_from_texture;
@@ -341,7 +386,8 @@ fn instance(view: &View, settings: &SceneSettings, volume: &VolumeData, bricks_s
     let axes = eye_from_texture.matrix3;
     let voxel =
         (axes.x_axis.length() / size.x).min(axes.y_axis.length() / size.y).min(axes.z_axis.length() / size.z);
-    let (low, high) = classified.domain;
+    let (lookup_scale, lookup_offset) = classified.lookup(texture.format);
+    let [greatest_colour, greatest_extinction] = voxels.map_or([1.0; 2], |voxels| voxels.greatest);
     let (lighting, [ambient, diffuse, specular, shininess]) = match lighting {
         VolumeLighting::EmissionAbsorption => (0, [0.0; 4]),
         VolumeLighting::Gradient { ambient, diffuse, specular, shininess } => {
@@ -352,8 +398,8 @@ fn instance(view: &View, settings: &SceneSettings, volume: &VolumeData, bricks_s
         texture_from_eye: glam::DMat4::from(eye_from_texture.inverse()).as_mat4(),
         size: size.as_vec3(),
         step: (voxel * f64::from(ray_cast.step)) as f32,
-        lookup_scale: texture.format.scale / (high - low),
-        lookup_offset: (texture.format.offset - low) / (high - low),
+        lookup_scale,
+        lookup_offset,
         table_entries: classified.table.entries.len() as u32,
         bricks_start,
         bricks: UVec3::from(classified.bricks),
@@ -366,6 +412,9 @@ fn instance(view: &View, settings: &SceneSettings, volume: &VolumeData, bricks_s
         shininess,
         sentinel: SENTINEL_THRESHOLD,
         reach: view.reach as f32,
+        classification: classification::number(classification_of(volume)),
+        greatest_colour,
+        greatest_extinction,
     }
 }
 
@@ -405,6 +454,12 @@ fn draw(
         wgpu::BindingResource::Sampler(sampler),
     ];
     resources.extend(volumes.iter().map(|volume| wgpu::BindingResource::TextureView(&volume.3.view)));
+    let classified = volumes.iter().filter_map(|volume| match classification_of(volume) {
+        Classification::Post => None,
+        Classification::Pre => volume.8.map(|voxels| &voxels.view),
+        Classification::PreIntegrated => volume.7.map(|pairs| &pairs.view),
+    });
+    resources.extend(classified.map(wgpu::BindingResource::TextureView));
     draw.cover(gpu, &resources, &target.view, timing);
 }
 
