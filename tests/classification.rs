@@ -503,6 +503,25 @@ mod work {
 
     #[test]
     #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+    fn on_a_part_of_the_pairs_shows_what_all_of_them_would() {
+        let mut studio = Studio::new();
+        let scene = |studio: &Studio, opacity: &str| {
+            let function = SMOOTH.replace("0.3)", opacity);
+            ball(studio, &format!("{function}, {SURFACE}"), "Gradient()", "")
+        };
+        let (before, after) = (scene(&studio, "0.3)"), scene(&studio, "0.5)"));
+        let old = studio.radiance(&before, 33, 27);
+        let seen = studio.radiance(&after, 33, 27);
+        assert!(difference(&old, &seen) > 0.01);
+        let work = &studio.report().passes["preintegrate"];
+        assert!(work.runs == 2 && work.work["pairs"] < 2 * 256 * 256, "{work:?}");
+        let mut fresh = Studio::new();
+        let after = scene(&fresh, "0.5)");
+        assert_eq!(seen, fresh.radiance(&after, 33, 27));
+    }
+
+    #[test]
+    #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
     fn on_voxels_is_done_again_only_when_the_function_or_the_data_changes() {
         let mut studio = Studio::new();
         studio.volume("v.raw", [4, 4, 4], |[x, ..]| x as f32);

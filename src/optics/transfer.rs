@@ -257,4 +257,39 @@ mod tests {
         assert!(held.between(2.0, 2.0));
         assert!(!held.between(f64::INFINITY, f64::NEG_INFINITY));
     }
+    #[test]
+    fn the_integral_of_any_stretch_is_that_of_its_parts() {
+        let mut function = ramp();
+        function.iso = vec![IsoValue { value: 40.0, width: 0.0, absorption: 2.0, ..Default::default() }];
+        let table = LookupTable::new(&function, (0.0, 100.0), 1.0, 10.0);
+        assert_eq!((table.layers.len(), table.layers[0].cell), (1, 1));
+        let passed = table.cumulative();
+        // The layer fills the cell from 1 to 2; a length of 1 for each entry.
+        let depth = |front: f64, back: f64| passed.depth(front, back, (back - front).abs());
+        let whole = depth(0.0, 4.0);
+        assert!(
+            (whole
+                - (2.0 + table.entries.iter().map(|entry| f64::from(entry.w)).sum::<f64>()
+                    - f64::from(table.entries[4].w) / 2.0))
+                .abs()
+                < 1e-6
+        );
+        for middle in [0.3, 1.25, 2.0, 3.9] {
+            assert!((depth(0.0, middle) + depth(middle, 4.0) - whole).abs() < 1e-9);
+            assert!((depth(4.0, middle) + depth(middle, 0.0) - whole).abs() < 1e-9);
+        }
+        let flat = passed.depth(2.5, 2.5, 3.0);
+        assert!((flat - 1.5 * f64::from(table.entries[2].w + table.entries[3].w)).abs() < 1e-6);
+        assert!((passed.depth(-7.0, 1.0, 1.0) - passed.depth(0.0, 1.0, 1.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_layer_is_met_by_what_crosses_it() {
+        let mut function = ramp();
+        function.points.clear();
+        function.iso = vec![IsoValue { value: 40.0, width: 0.0, ..Default::default() }];
+        let held = LookupTable::new(&function, (0.0, 100.0), 1.0, 1.0).holds_something();
+        assert!(held.between(0.0, 4.0) && held.between(1.9, 3.0) && held.between(0.5, 1.1));
+        assert!(!held.between(0.0, 1.0) && !held.between(2.0, 4.0) && !held.between(1.5, 1.5));
+    }
 }

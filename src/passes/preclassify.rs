@@ -40,12 +40,11 @@ mirror! {
     }
 }
 
-#[expect(clippy::too_many_arguments, reason = "what a system reads and writes")]
 pub(crate) fn preclassify(
     mut commands: Commands,
     gpu: Res<Gpu>,
     volumes: Query<(Entity, Ref<Classified>, Ref<VolumeTexture>, &LoadedVolume, Has<ClassifiedVoxels>)>,
-    orphans: Query<Entity, (With<ClassifiedVoxels>, Without<Classified>)>,
+    orphans: Query<Entity, (With<ClassifiedVoxels>, Without<LoadedVolume>)>,
     mut kernel: ResMut<Preclassifier>,
     mut timer: Option<ResMut<PassTimer>>,
     (mut report, mut failure, mut problems): (ResMut<Report>, ResMut<Failure>, ResMut<Problems>),

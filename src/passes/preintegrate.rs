@@ -10,10 +10,11 @@ use crate::components::{Classification, Placement, RayCast, SceneSettings};
 use crate::gpu::{Gpu, texture_of};
 use crate::loading::LoadedVolume;
 use crate::optics::preintegration::Preintegration;
-use crate::optics::transfer::LookupTable;
+use crate::optics::transfer::{Layer, LookupTable};
 use crate::report::Report;
 use bevy_ecs::prelude::*;
 use glam::{DVec3, UVec2, Vec4};
+use std::time::Instant;
 
 /// The pre-integrated table of a volume.
 #[derive(Component, Debug)]
@@ -39,7 +40,7 @@ pub(crate) fn preintegrate(
         &RayCast,
         Option<&mut PreintegratedPairs>,
     )>,
-    orphans: Query<Entity, (With<PreintegratedPairs>, Without<Classified>)>,
+    orphans: Query<Entity, (With<PreintegratedPairs>, Without<LoadedVolume>)>,
     settings: Res<SceneSettings>,
     mut report: ResMut<Report>,
 ) {
@@ -58,6 +59,7 @@ pub(crate) fn preintegrate(
         let side = classified.table.entries.len();
         bytes += 16 * (side * (side + 1)) as u64;
         let length = segment_length(volume, placement, ray_cast, &settings);
+        let since = Instant::now();
         let kept = held.filter(|held| (held.pairs.length / length - 1.0).abs() < SAME);
         let (pairs, count) = match kept {
             Some(held) if held.table == classified.table => continue,
@@ -71,8 +73,9 @@ pub(crate) fn preintegrate(
             None => (Preintegration::new(&classified.table, length), side * side),
         };
         made_any = true;
-        report.ran("preintegrate", &[("pairs", count as u64)]);
         let view = upload(&gpu, &pairs, &classified.table);
+        report.ran("preintegrate", &[("pairs", count as u64)]);
+        report.took("preintegrate", since.elapsed().as_secs_f64() * 1e3);
         commands.entity(entity).insert(PreintegratedPairs { view, table: classified.table.clone(), pairs });
     }
     if made_any {
@@ -108,7 +111,7 @@ fn about_layers(table: &LookupTable) -> Vec<Vec4> {
     let texel = |(entry, [_, _, below, _]): (usize, &[f32; 4])| {
         let above = layers.iter().find(|layer| layer.cell >= entry);
         let under = layers.iter().rfind(|layer| layer.cell <= entry);
-        let place = |layer: &crate::optics::transfer::Layer| layer.position as f32;
+        let place = |layer: &Layer| layer.position as f32;
         Vec4::new(*below, above.map_or(f32::MAX, place), under.map_or(-1.0, place), 0.0)
     };
     table.cumulative().entries.iter().enumerate().map(texel).collect()
