@@ -11,7 +11,9 @@
 #import frame
 #import fullscreen
 #import lights
+#import phase
 #import volumes
+#import light_volumes
 #import classify
 
 struct VolumeInstance {
@@ -32,7 +34,7 @@ struct VolumeInstance {
     // The ray ends when less than this is left of what lies behind.
     least_transmittance: f32,
     skip_empty: u32,
-    // 0 emission-absorption, 1 gradient.
+    // 0 emission-absorption, 1 gradient, 2 scattering, 3 scattering without any light.
     lighting: u32,
     ambient: f32,
     diffuse: f32,
@@ -42,6 +44,12 @@ struct VolumeInstance {
     sentinel: f32,
     // Scene units to a unit of eye space.
     reach: f32,
+    // Mean cosine of scattering.
+    g: f32,
+    // Share of the colour that is emitted by a volume that scatters.
+    emission: f32,
+    // Light volume of the first light.
+    first_sweep: u32,
     // 0 Post, 1 Pre, 2 PreIntegrated.
     classification: u32,
     // What classified voxels are shares of.
@@ -118,8 +126,16 @@ fn absorbed(depth: f32) -> f32 {
     return select(1.0 - exp(-depth), series, depth < 0.05);
 }
 
-// Blinn-Phong with the gradient of the field for a normal.
-fn shade(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
+// The gradient of the field as a normal that leans towards the eye.
+struct Normal {
+    direction: vec3f,
+    // Whether the field does not vary.
+    flat: bool,
+    // How much the value varies over a voxel, as a share of the domain.
+    steepness: f32,
+}
+
+fn normal_at(index: u32, volume: VolumeInstance, place: vec3f, centre: f32, ray: Ray) -> Normal {
     let voxel = 1.0 / volume.size;
     let x = vec3f(voxel.x, 0.0, 0.0);
     let y = vec3f(0.0, voxel.y, 0.0);
@@ -135,20 +151,59 @@ fn shade(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre
     let flat = steepest * volume.lookup_scale * volume.step < 1e-6;
     let scaled = gradient / max(steepest, 1e-30);
     let along = scaled * inverseSqrt(max(dot(scaled, scaled), 1e-30));
-    let normal = select(along, -along, dot(along, ray.direction) > 0.0);
+    let steepness = 0.5 * length(ahead - behind) * volume.lookup_scale;
+    return Normal(select(along, -along, dot(along, ray.direction) > 0.0), flat, steepness);
+}
+
+// Blinn's highlight (n.h)^s.
+fn highlight(normal: Normal, to_light: vec3f, shininess: f32, ray: Ray) -> f32 {
+    let sum = to_light - ray.direction;
+    let half_way = sum * inverseSqrt(max(dot(sum, sum), 1e-12));
+    let bright = pow(max(dot(normal.direction, half_way), 1e-6), shininess);
+    return select(bright, 0.0, normal.flat || dot(normal.direction, to_light) <= 0.0);
+}
+
+// Blinn-Phong with the gradient of the field for a normal.
+fn shade(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
+    let normal = normal_at(index, volume, place, centre, ray);
     var diffuse = vec3f(0.0);
     var specular = vec3f(0.0);
     for (var i = 0u; i < frame.light_count; i += 1u) {
-        let to_light = lights[i].to_light;
         let irradiance = lights[i].irradiance / PI;
-        let sum = to_light - ray.direction;
-        let half_way = sum * inverseSqrt(max(dot(sum, sum), 1e-12));
-        let cosine = max(dot(normal, to_light), 0.0);
-        let highlight = pow(max(dot(normal, half_way), 1e-6), volume.shininess);
-        diffuse += irradiance * select(cosine, 1.0, flat);
-        specular += irradiance * select(highlight, 0.0, flat || cosine == 0.0);
+        let cosine = max(dot(normal.direction, lights[i].to_light), 0.0);
+        diffuse += irradiance * select(cosine, 1.0, normal.flat);
+        specular += irradiance * highlight(normal, lights[i].to_light, volume.shininess, ray);
     }
     return colour * (volume.ambient + volume.diffuse * diffuse) + volume.specular * specular;
+}
+
+// Light that is scattered towards the eye: the source function where the albedo is `colour`.
+fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
+    let albedo = min(colour, vec3f(1.0));
+    var arriving = vec3f(0.0);
+    var specular = vec3f(0.0);
+    var normal: Normal;
+    if volume.specular > 0.0 {
+        normal = normal_at(index, volume, place, centre, ray);
+    }
+    for (var i = 0u; i < frame.light_count; i += 1u) {
+        let light = lights[i].irradiance * light_left(volume.first_sweep + i, place);
+        arriving += light * henyey_greenstein(-lights[i].to_light, -ray.direction, volume.g);
+        if volume.specular > 0.0 {
+            specular += light / PI * highlight(normal, lights[i].to_light, volume.shininess, ray);
+        }
+    }
+    return albedo * arriving + volume.emission * colour + volume.specular * min(4.0 * normal.steepness, 1.0) * specular;
+}
+
+// What a piece of the medium sends to the eye, per share that it absorbs.
+fn source(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
+    switch volume.lighting {
+        case 1u: { return shade(index, volume, colour, place, centre, ray); }
+        case 2u: { return scatter(index, volume, colour, place, centre, ray); }
+        case 3u: { return volume.emission * colour; }
+        default: { return colour; }
+    }
 }
 
 @fragment
@@ -260,7 +315,7 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                     } else if ANY_PRE && volume.classification == PRE {
                         texel = texel_at(index, place);
                     }
-                    colour = select(colour, shade(index, volume, colour, place, texel, ray), volume.lighting == 1u);
+                    colour = source(index, volume, colour, place, texel, ray);
                 }
                 radiance += transmittance * alpha * colour;
                 transmittance *= 1.0 - alpha;

@@ -3,12 +3,15 @@
 //   opaque       L = ambient + sum over lights of (diffuse/pi + specular (s+8)/(8 pi) (n.h)^s) E max(n.l, 0)
 //   translucent  L = T(eta, n.o) M_o + sum over lights of specular (s+8)/(8 pi) (n.h)^s E max(n.l, 0)
 //
-// reads  vertices (position, normal; what leaves there), the mesh, lights
+// with E the irradiance that volumes in the way leave.
+//
+// reads  vertices (position, normal; what leaves there), the mesh, lights, light volumes
 // writes rgba32float: radiance, distance along the ray (FAR where there is no surface)
 
 #import frame
 #import fresnel
 #import lights
+#import veils
 
 struct MeshInstance {
     eye_from_mesh: mat4x4f,
@@ -45,6 +48,7 @@ fn transform(@location(0) position: vec3f, @location(1) normal: vec3f) -> Varyin
 }
 
 struct Seen {
+    position: vec3f,
     normal: vec3f,
     to_eye: vec3f,
     distance: f32,
@@ -58,7 +62,7 @@ fn seen(in: Varyings) -> Seen {
     let across = cross(dpdx(in.position_in_eye), dpdy(in.position_in_eye));
     let towards_eye = across * sign(dot(across, to_eye));
     let facing = normalize(in.normal_in_eye);
-    return Seen(select(-facing, facing, dot(facing, towards_eye) >= 0.0), to_eye, distance);
+    return Seen(in.position_in_eye, select(-facing, facing, dot(facing, towards_eye) >= 0.0), to_eye, distance);
 }
 
 // What reflects the lights towards the eye.
@@ -68,7 +72,8 @@ fn reflected(at: Seen, diffuse: vec3f) -> vec3f {
         let light = lights[i];
         let half_way = normalize(light.to_light + at.to_eye);
         let highlight = (mesh.shininess + 8.0) / (8.0 * PI) * pow(max(dot(at.normal, half_way), 0.0), mesh.shininess);
-        radiance += (diffuse / PI + mesh.specular * highlight) * light.irradiance * max(dot(at.normal, light.to_light), 0.0);
+        radiance += (diffuse / PI + mesh.specular * highlight) * light.irradiance * max(dot(at.normal, light.to_light), 0.0)
+            * through_volumes(at.position, i);
     }
     return radiance;
 }

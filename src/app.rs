@@ -19,6 +19,8 @@ pub enum Stage {
     Classify,
     /// The camera and the lights of the frame.
     View,
+    /// How much of each light arrives inside the volumes that scatter.
+    LightVolume,
     /// What each light reaches of the meshes that scatter.
     LightGbuffer,
     /// What their scattering cameras see of them, where maps are asked for.
@@ -36,13 +38,14 @@ pub enum Stage {
 }
 
 impl Stage {
-    const ALL: [Self; 13] = [
+    const ALL: [Self; 14] = [
         Self::Animate,
         Self::Place,
         Self::Load,
         Self::Upload,
         Self::Classify,
         Self::View,
+        Self::LightVolume,
         Self::LightGbuffer,
         Self::ScatteringGbuffer,
         Self::ScatteredRadiosity,

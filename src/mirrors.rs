@@ -51,6 +51,7 @@ pub fn all() -> Vec<Mirror> {
     vec![
         view::FrameUniform::mirror(),
         view::LightUniform::mirror(),
+        passes::dimmed_gbuffer::LightViewUniform::mirror(),
         passes::gbuffer::SeenMeshUniform::mirror(),
         passes::medium::MediumUniform::mirror(),
         passes::scattering_gbuffer::MapCameraUniform::mirror(),
@@ -60,6 +61,10 @@ pub fn all() -> Vec<Mirror> {
         passes::combine::CombinationUniform::mirror(),
         passes::surface::MeshInstance::mirror(),
         passes::preclassify::VoxelsUniform::mirror(),
+        passes::light_volume::ExtinctionUniform::mirror(),
+        passes::light_volume::shadow::ShadowUniform::mirror(),
+        passes::light_volume::sweep::ColumnsUniform::mirror(),
+        passes::light_volume::sweep::SweepUniform::mirror(),
         passes::raycast::VolumeInstance::mirror(),
         passes::tonemap::DisplayUniform::mirror(),
     ]
@@ -70,10 +75,16 @@ pub fn all() -> Vec<Mirror> {
 pub fn generated_modules() -> Vec<(&'static str, String)> {
     use crate::components::Classification::{Pre, PreIntegrated};
     use crate::gpu::Filtering::{Sampler, Shader};
+    let count = passes::light_volume::through::VeilCount { volumes: 2, lights: 1 };
+    // Behind the bindings of every shader that has these modules.
+    let (volumes, first, classified) = (16, 18, 32);
+    let [light_volumes, veils] = passes::light_volume::through::modules(count, Sampler, first);
     vec![
-        ("volumes", passes::raycast::volumes_module(&[Sampler, Shader], true)),
-        passes::raycast::classifications_module(&[Pre, PreIntegrated]),
+        ("volumes", passes::raycast::volumes_module(&[Sampler, Shader], true, volumes)),
+        passes::raycast::classifications_module(&[Pre, PreIntegrated], classified),
         view::lights_module(4),
+        light_volumes,
+        veils,
         passes::scattered_radiosity::sampling_module(&Default::default(), 5),
         passes::scattered_radiosity::listing_module(false),
     ]

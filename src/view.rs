@@ -213,10 +213,9 @@ fn upload_frame(
     mut problems: ResMut<Problems>,
 ) {
     let half_extent = view.half_extent(picture.size);
-    let light_uniforms: Vec<LightUniform> = lights
-        .iter()
-        .take(MAX_LIGHTS)
-        .map(|(_, light, motion)| light_uniform(&view, light, motion))
+    let light_uniforms: Vec<LightUniform> = lights_in_order(&lights)
+        .into_iter()
+        .filter_map(|(entity, to_light)| Some(light_uniform(&view, lights.get(entity).ok()?.1, to_light)))
         .collect();
     if let Some((entity, ..)) = lights.iter().nth(MAX_LIGHTS) {
         let message = format!("a scene has at most {MAX_LIGHTS} lights, found {}", lights.iter().count());
@@ -238,8 +237,8 @@ fn upload_frame(
     });
 }
 
-fn light_uniform(view: &View, light: &DirectionalLight, motion: Option<&Motion>) -> LightUniform {
-    let to_light = view.eye_from_scene.transform_vector3(to_light(light, motion)).normalize();
+fn light_uniform(view: &View, light: &DirectionalLight, to_light: DVec3) -> LightUniform {
+    let to_light = view.eye_from_scene.transform_vector3(to_light).normalize();
     LightUniform { to_light: to_light.as_vec3(), irradiance: light.irradiance }
 }
 

@@ -17,6 +17,8 @@ fn shaders() -> Vec<(&'static str, naga::Module, String)> {
         "combine",
         "surface",
         "preclassify",
+        "light_volume",
+        "dimmed_gbuffer",
         "raycast",
         "tonemap",
     ]

@@ -13,6 +13,8 @@ mod phase;
 mod profiles;
 #[path = "optics/sampling.rs"]
 mod sampling;
+#[path = "optics/two_stream.rs"]
+mod two_stream;
 
 use glam::DVec3;
 use serde_json::Value;

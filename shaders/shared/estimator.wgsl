@@ -34,7 +34,7 @@ struct Estimator {
     gain: vec3f,
 }
 
-// The point of the lit surface at a place across the light, as (normal, height); the normal is 0 where no light arrives.
+// The point of the lit surface at a place across the light, as (normal, height). The normal is as long as the share of light that arrives.
 fn lit_at(place: vec2f) -> vec4f {
     let at = (place - estimator.low) * estimator.inverse_texel;
     let size = vec2f(textureDimensions(light_gbuffer));
@@ -59,7 +59,8 @@ fn scattered(medium: Medium, x_o: vec3f, n_o: vec3f, index: u32) -> vec3f {
         let lit = lit_at(x_o.xy + sample.xy);
         let between = vec3f(-sample.xy, x_o.z - lit.w);
         if any(lit.xyz != vec3f(0.0)) && sample.z > 0.0 {
-            sum += sample.z * subsurface(medium, between, normalize(lit.xyz), TO_LIGHT, n_o);
+            let arrives = length(lit.xyz);
+            sum += sample.z * arrives * subsurface(medium, between, lit.xyz / arrives, TO_LIGHT, n_o);
         }
     }
     return sum;

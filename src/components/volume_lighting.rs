@@ -1,16 +1,25 @@
-use super::Range;
+use super::{Auto, Range, Unit};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
 /// How a volume meets the light.
 ///
-/// | variant | field | range | default |
-/// |---|---|---|---|
-/// | `EmissionAbsorption` | – | – | – |
-/// | `Gradient` | `ambient`: share of the colour that is there without light | at least 0 | 0.2 |
-/// | | `diffuse`: Lambert's share | at least 0 | 0.7 |
-/// | | `specular`: strength of the white highlight | at least 0 | 0.3 |
-/// | | `shininess`: Blinn's exponent | 0 to 10,000 | 16 |
+/// | variant | field | unit | range | default |
+/// |---|---|---|---|---|
+/// | `EmissionAbsorption` | – | – | – | – |
+/// | `Gradient` | `ambient`: share of the colour that is there without light | – | at least 0 | 0.2 |
+/// | | `diffuse`: Lambert's share | – | at least 0 | 0.7 |
+/// | | `specular`: strength of the white highlight | – | at least 0 | 0.3 |
+/// | | `shininess`: Blinn's exponent | – | 0 to 10,000 | 16 |
+/// | `SingleScattering` | `g`: mean cosine of scattering | – | -0.999 to 0.999 | 0 |
+/// | | `resolution`: nodes per voxel along each axis, at which the light that arrives is kept | – | 1/8 to 1 | 1 |
+/// | `LightVolume` | `cone_angle`: half angle of the cone in which scattered light travels, or `Auto` | degrees | 1 to 89 | `Auto` |
+/// | | `resolution`: as above; scattered light is kept at a quarter of it | – | 1/8 to 1 | 1 |
+/// | | `blend`: sweep along every axis that the light leans to, not only the nearest | – | – | true |
+/// | | `towards_eye`: sweep towards the viewer as well, so that forward scattering spreads what is behind | – | – | false |
+/// | | `gradient_specular`: strength of the highlight on surfaces in the field | – | at least 0 | 0 |
+/// | | `emission`: share of the colour that is emitted besides | – | at least 0 | 0 |
+/// | | `g`: as above | – | -0.999 to 0.999 | 0 |
 ///
 /// *Emission-absorption* (Max 1995, eq. 10): each piece of the medium emits the colour of the transfer function and absorbs what lies
 /// behind it; lights play no part. *Gradient* takes the normalised gradient of the field (central differences, one voxel to either
@@ -18,8 +27,18 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 /// that a light of irradiance pi gives the familiar figures. Where the field is flat there is no normal and only `ambient` and
 /// `diffuse` remain, as if the light came from the front.
 ///
+/// In the other two the colour of the transfer function is the albedo, 0 to 1 in each channel (more counts as 1), and only lights give light.
+/// *Single scattering* is light that was scattered once: albedo p(g, cos) E exp(-tau) from each piece of the medium, with tau the optical
+/// depth towards the light and p Henyey and Greenstein's phase function. It is exact as `resolution` and the step of the ray are
+/// refined. The *light volume* (after Ropinski and others 2010) adds light that was scattered more often, by sweeps through the volume away
+/// from the light and back: an approximation, see `docs/architecture.md` for how far off it is.
+///
+/// Volumes with one of these two shade the meshes of a scene and are shaded by them, unless the head of the scene says otherwise.
+///
 /// ```ron
 /// VolumeLighting: Gradient(ambient: 0.2, diffuse: 0.7, specular: 0.3, shininess: 16.0)
+/// VolumeLighting: SingleScattering(g: 0.6)
+/// VolumeLighting: LightVolume(resolution: 0.5, gradient_specular: 0.3)
 /// ```
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(Component, Default, PartialEq)]
@@ -42,6 +61,72 @@ pub enum VolumeLighting {
         #[reflect(default = "shininess", @Range::new(0.0, 10_000.0))]
         shininess: f32,
     },
+    /// Light that was scattered once.
+    SingleScattering {
+        /// Mean cosine of scattering.
+        #[reflect(default, @Range::new(-0.999, 0.999))]
+        g: f32,
+        /// Nodes per voxel along each axis.
+        #[reflect(default = "full", @Range::new(0.125, 1.0))]
+        resolution: f32,
+    },
+    /// Light that was scattered, however often.
+    LightVolume {
+        /// Half angle of the cone of scattered light.
+        #[reflect(default, @Range::new(1.0, 89.0), @Unit("degrees"))]
+        cone_angle: Auto<f32>,
+        /// Nodes per voxel along each axis.
+        #[reflect(default = "full", @Range::new(0.125, 1.0))]
+        resolution: f32,
+        /// Whether all axes that the light leans to are swept.
+        #[reflect(default = "yes")]
+        blend: bool,
+        /// Whether light is swept towards the viewer too.
+        #[reflect(default)]
+        towards_eye: bool,
+        /// Strength of the highlight.
+        #[reflect(default, @Range::non_negative())]
+        gradient_specular: f32,
+        /// Share of the colour that is emitted.
+        #[reflect(default, @Range::non_negative())]
+        emission: f32,
+        /// Mean cosine of scattering.
+        #[reflect(default, @Range::new(-0.999, 0.999))]
+        g: f32,
+    },
+}
+
+impl VolumeLighting {
+    /// The local model in place of a scattering technique where [`Shading`](super::Shading) is `Local`: `Gradient` with its defaults.
+    pub fn local(&self) -> Self {
+        match self {
+            Self::SingleScattering { .. } | Self::LightVolume { .. } => Self::Gradient {
+                ambient: ambient(),
+                diffuse: diffuse(),
+                specular: specular(),
+                shininess: shininess(),
+            },
+            other => other.clone(),
+        }
+    }
+
+    /// Nodes per voxel at which the light that arrives is kept, of lightings that need it.
+    pub fn light_resolution(&self) -> Option<f32> {
+        match self {
+            Self::SingleScattering { resolution, .. } | Self::LightVolume { resolution, .. } => {
+                Some(*resolution)
+            }
+            _ => None,
+        }
+    }
+}
+
+fn full() -> f32 {
+    1.0
+}
+
+fn yes() -> bool {
+    true
 }
 
 fn ambient() -> f32 {

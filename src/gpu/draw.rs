@@ -188,6 +188,8 @@ pub mod binding {
         view_dimension: wgpu::TextureViewDimension::D2,
         multisampled: false,
     };
+    /// A 3D texture of 32-bit floats that a kernel writes.
+    pub const GRID_OUT: wgpu::BindingType = grid_out(wgpu::TextureFormat::R32Float);
     /// A sampler that filters.
     pub const SAMPLER: wgpu::BindingType = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
 
@@ -205,6 +207,13 @@ pub mod binding {
             has_dynamic_offset: false,
             min_binding_size: None,
         }
+    }
+
+    /// A 3D texture that a kernel writes.
+    pub const fn grid_out(format: wgpu::TextureFormat) -> wgpu::BindingType {
+        let (access, view_dimension) =
+            (wgpu::StorageTextureAccess::WriteOnly, wgpu::TextureViewDimension::D3);
+        wgpu::BindingType::StorageTexture { access, format, view_dimension }
     }
 
     /// A texture of floats; `filterable` where a sampler filters it.

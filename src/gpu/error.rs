@@ -45,6 +45,19 @@ pub enum GpuError {
         /// The most pixels along either side.
         limit: u32,
     },
+    /// A grid has more texels along a side than the adapter can make.
+    #[error(
+        "{what}: {} x {} x {} texels are more than this adapter takes: {limit} along each side; lower the `resolution`",
+        .size[0], .size[1], .size[2]
+    )]
+    GridTooLarge {
+        /// What the grid is for.
+        what: String,
+        /// Texels along each axis.
+        size: [u32; 3],
+        /// The most texels along a side.
+        limit: u32,
+    },
     /// The driver refused, ran out of memory or lost the device.
     #[error("the graphics driver failed while {doing}: {reason}")]
     Driver {

@@ -17,12 +17,14 @@ sources! {
     "bssrdf" => "shared/bssrdf.wgsl",
     "classify" => "shared/classify.wgsl",
     "combine" => "combine.wgsl",
+    "dimmed_gbuffer" => "dimmed_gbuffer.wgsl",
     "estimator" => "shared/estimator.wgsl",
     "frame" => "shared/frame.wgsl",
     "fresnel" => "shared/fresnel.wgsl",
     "fullscreen" => "shared/fullscreen.wgsl",
     "gather" => "gather.wgsl",
     "gbuffer" => "gbuffer.wgsl",
+    "light_volume" => "light_volume.wgsl",
     "maps" => "shared/maps.wgsl",
     "phase" => "shared/phase.wgsl",
     "preclassify" => "preclassify.wgsl",
@@ -33,7 +35,9 @@ sources! {
     "scattered_texels" => "scattered_texels.wgsl",
     "scattering_texels" => "scattering_texels.wgsl",
     "surface" => "surface.wgsl",
+    "sweep" => "shared/sweep.wgsl",
     "tonemap" => "tonemap.wgsl",
+    "two_stream" => "shared/two_stream.wgsl",
 }
 
 /// The text of a shader with all its imports in front of what needs them. `generated` are modules made for this use.

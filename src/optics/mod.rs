@@ -15,3 +15,4 @@ mod quadrature;
 pub mod sampling;
 pub mod transfer;
 pub mod transport;
+pub mod two_stream;

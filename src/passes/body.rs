@@ -23,7 +23,8 @@ pub(crate) struct Body {
 }
 
 impl Body {
-    fn of(bounds: (glam::Vec3, glam::Vec3), placement: &Placement, millimetres_per_unit: f32) -> Self {
+    /// The body space of a box.
+    pub fn of(bounds: (glam::Vec3, glam::Vec3), placement: &Placement, millimetres_per_unit: f32) -> Self {
         let corners: Vec<DVec3> = placed_corners(placement, bounds).collect();
         let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
         let radius = corners.iter().map(|corner| corner.distance(centre)).fold(0.0, f64::max);

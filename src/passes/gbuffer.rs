@@ -45,7 +45,12 @@ impl OrthographicView {
         let view_from_body = Self::rotation(towards);
         let view_from_mesh = view_from_body * body.body_from_mesh;
         let positions = mesh.data.iter().flat_map(|data| &data.positions);
-        let (low, high) = extent(positions.map(|p| view_from_mesh.transform_point3(p.as_dvec3())));
+        let seen = extent(positions.map(|p| view_from_mesh.transform_point3(p.as_dvec3())));
+        Self::around(view_from_body, seen, fit)
+    }
+
+    /// The view that shows all between two corners.
+    pub fn around(view_from_body: DAffine3, (low, high): (DVec3, DVec3), fit: Fit) -> Self {
         let extent = (high - low).truncate();
         // Half a texel to spare on each side, and no view without any width.
         let (texel, size) = match fit {
@@ -68,15 +73,15 @@ impl OrthographicView {
     }
 }
 
-/// The corners of a mesh's box as seen in a view.
+/// The corners of a box as seen in a view.
 pub(crate) fn seen_box(
     view_from_body: DAffine3,
     body: &Body,
     placement: &Placement,
-    mesh: &LoadedMesh,
+    bounds: (Vec3, Vec3),
 ) -> (DVec3, DVec3) {
     let view_from_scene = view_from_body * body.body_from_scene;
-    extent(placed_corners(placement, mesh.bounds).map(|corner| view_from_scene.transform_point3(corner)))
+    extent(placed_corners(placement, bounds).map(|corner| view_from_scene.transform_point3(corner)))
 }
 
 fn extent(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {

@@ -5,16 +5,18 @@
 //! Reruns when the light's direction, the mesh, its placement or what stands between the two changes; a driver without memory fails it.
 
 use super::body::Body;
+use super::dimmed_gbuffer::{Dimmer, dim};
 use super::gbuffer::{FORMAT, Fit, Gbuffer, OrthographicView, seen_box};
+use super::light_volume::through::{Shading, Veils};
 use super::upload::MeshBuffers;
-use crate::components::{DirectionalLight, Motion, Placement};
+use crate::components::{DirectionalLight, Motion, Placement, SceneSettings};
 use crate::gpu::{Gpu, GpuError, PassTimer, Target};
 use crate::loading::LoadedMesh;
 use crate::render::Failure;
 use crate::report::Report;
 use crate::view::lights_in_order;
 use bevy_ecs::prelude::*;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 /// The G-buffers of a mesh, one for each light, in the order of the lights.
 #[derive(Component, Debug, Default)]
@@ -43,15 +45,17 @@ struct Recipe {
     body: Body,
     mesh: MeshBuffers,
     blockers: Vec<Blocker>,
+    /// The volumes that the light comes through.
+    veils: Vec<(DAffine3, u64)>,
 }
 
-/// Another mesh that stands between the light and the body.
+/// A mesh that stands between the light and a body.
 #[derive(Clone, Debug, PartialEq)]
-struct Blocker {
-    mesh: MeshBuffers,
-    placement: Placement,
+pub(crate) struct Blocker {
+    pub mesh: MeshBuffers,
+    pub placement: Placement,
     /// How far it reaches towards the light, in body space.
-    top: f64,
+    pub top: f64,
 }
 
 /// How many views there have been.
@@ -71,7 +75,8 @@ impl Default for LightTexels {
 /// Bytes of all views of a mesh together, at most; with many lights each gets fewer texels.
 const BUDGET: u64 = 256 << 20;
 
-type Meshes<'w, 's> = Query<'w, 's, (Entity, &'static MeshBuffers, &'static Placement, &'static LoadedMesh)>;
+pub(crate) type Meshes<'w, 's> =
+    Query<'w, 's, (Entity, &'static MeshBuffers, &'static Placement, &'static LoadedMesh)>;
 type Bodies<'w, 's> = Query<
     'w,
     's,
@@ -87,11 +92,11 @@ type Bodies<'w, 's> = Query<
 
 pub(crate) fn run(
     mut commands: Commands,
-    (gpu, wanted): (Res<Gpu>, Res<LightTexels>),
+    (gpu, wanted, settings, shading): (Res<Gpu>, Res<LightTexels>, Res<SceneSettings>, Shading),
     mut bodies: Bodies,
     meshes: Meshes,
     lights: Query<(Entity, &DirectionalLight, Option<&Motion>)>,
-    (mut gbuffer, mut version): (ResMut<Gbuffer>, ResMut<LightViewVersion>),
+    (mut gbuffer, mut dimmer, mut version): (ResMut<Gbuffer>, ResMut<Dimmer>, ResMut<LightViewVersion>),
     (mut timer, mut report, mut failure): (Option<ResMut<PassTimer>>, ResMut<Report>, ResMut<Failure>),
 ) {
     let lights = lights_in_order(&lights);
@@ -103,8 +108,17 @@ pub(crate) fn run(
         let kept = views.as_mut().map_or(&mut own, |views| views.bypass_change_detection());
         let mut old = std::mem::take(&mut kept.0);
         for (light, to_light) in &lights {
-            let blockers = blockers(body, *to_light, (entity, placement, mesh), &meshes);
-            let recipe = Recipe { to_light: *to_light, texels, body: *body, mesh: buffers.clone(), blockers };
+            let seen = seen_box(OrthographicView::rotation(*to_light), body, placement, mesh.bounds);
+            let blockers = blockers(body, *to_light, seen, entity, &meshes);
+            let veils = Veils::gather(&shading, &settings, Some(*light));
+            let recipe = Recipe {
+                to_light: *to_light,
+                texels,
+                body: *body,
+                mesh: buffers.clone(),
+                blockers,
+                veils: veils.recipe(),
+            };
             let index = old.iter().position(|view| view.light == *light);
             let view = index.map(|index| old.swap_remove(index));
             if let Some(view) = view.filter(|view| view.recipe == recipe) {
@@ -113,7 +127,14 @@ pub(crate) fn run(
                 continue;
             }
             let timing = timer.as_mut().and_then(|timer| timer.time("light_gbuffer"));
-            match draw(&gpu, &mut gbuffer, mesh, &recipe, timing, &mut report) {
+            let drawn =
+                draw(&gpu, &mut gbuffer, mesh, &recipe, timing, &mut report).and_then(|(view, target)| {
+                    let scene_from_view = (view.view_from_body * body.body_from_scene).inverse();
+                    let timer = timer.as_deref_mut();
+                    dim(&gpu, &mut dimmer, target, &view, scene_from_view, &veils, timer, &mut report)
+                        .map(|target| (view, target))
+                });
+            match drawn {
                 Ok((view, target)) => {
                     version.0 += 1;
                     held += target.bytes();
@@ -129,18 +150,18 @@ pub(crate) fn run(
     report.hold("light_gbuffer", held);
 }
 
-/// The other meshes that stand between the light and the body.
-fn blockers(
+/// The meshes, `own` excepted, that stand between the light and what lies between two corners as the light sees it.
+pub(crate) fn blockers(
     body: &Body,
     to_light: DVec3,
-    (own, placement, mesh): (Entity, &Placement, &LoadedMesh),
+    (low, high): (DVec3, DVec3),
+    own: Entity,
     meshes: &Meshes,
 ) -> Vec<Blocker> {
     let light_from_body = OrthographicView::rotation(to_light);
-    let (low, high) = seen_box(light_from_body, body, placement, mesh);
     let mut found: Vec<(Entity, Blocker)> = Vec::new();
     for (entity, buffers, placement, mesh) in meshes.iter().filter(|(entity, ..)| *entity != own) {
-        let (its_low, its_high) = seen_box(light_from_body, body, placement, mesh);
+        let (its_low, its_high) = seen_box(light_from_body, body, placement, mesh.bounds);
         let is_beside = its_low.truncate().cmpgt(high.truncate()).any()
             || its_high.truncate().cmplt(low.truncate()).any();
         if !is_beside && its_high.z > low.z {
@@ -160,7 +181,7 @@ fn draw(
     timing: Option<wgpu::RenderPassTimestampWrites>,
     report: &mut Report,
 ) -> Result<(OrthographicView, Target), GpuError> {
-    let Recipe { to_light, texels, body, mesh: buffers, blockers } = recipe;
+    let Recipe { to_light, texels, body, mesh: buffers, blockers, .. } = recipe;
     let view = OrthographicView::fitted(body, mesh, *to_light, Fit::Longer(*texels));
     let target = Target::new(gpu, "light_gbuffer", view.size, FORMAT)?;
     let depth = Target::new(gpu, "light_gbuffer depth", view.size, wgpu::TextureFormat::Depth32Float)?;

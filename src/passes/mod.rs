@@ -4,8 +4,10 @@ pub(crate) mod body;
 pub(crate) mod classification;
 pub mod classify;
 pub mod combine;
+pub mod dimmed_gbuffer;
 pub mod gbuffer;
 pub mod light_gbuffer;
+pub mod light_volume;
 pub mod medium;
 pub mod preclassify;
 pub mod preintegrate;
@@ -34,9 +36,11 @@ impl Plugin for ScatteringPlugin {
             .init_resource::<scattered_radiosity::Refinement>()
             .init_resource::<combine::Combiner>();
         let there_is_a_gpu = resource_exists::<Gpu>;
+        app.init_resource::<light_volume::LightSweeper>().init_resource::<dimmed_gbuffer::Dimmer>();
         app.add_systems(
             Update,
             (
+                light_volume::run.in_set(Stage::LightVolume),
                 (body::measure, body::forget, surface_points::refine, light_gbuffer::run)
                     .chain()
                     .in_set(Stage::LightGbuffer),

@@ -6,12 +6,13 @@
 
 use super::classification;
 use super::classify::{Classified, classify};
+use super::light_volume::{LightVolume, LightVolumes, lighting_in_force, lookup, scene_from_texture};
 use super::preclassify::{ClassifiedVoxels, Preclassifier, preclassify};
 use super::preintegrate::{PreintegratedPairs, preintegrate};
 use super::surface::Surface;
 use super::upload::{SENTINEL_THRESHOLD, VolumeTexture, VolumeUploadPlugin};
 use crate::components::{
-    Classification, Placement, RayCast as RayCastSettings, SceneSettings, VolumeLighting,
+    Classification, Placement, RayCast as RayCastSettings, SceneSettings, Shading, VolumeLighting,
 };
 use crate::gpu::{
     Draw, DrawDescriptor, Filtering, Gpu, GpuError, PassTimer, Target, binding, texture_of, uniform_array,
@@ -24,7 +25,7 @@ use crate::view::{FrameBuffers, Picture, View, far_background, lights_module};
 use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
-use glam::{DAffine3, DVec3, Mat4, UVec2, UVec3, Vec3, Vec4};
+use glam::{DVec3, Mat4, UVec2, UVec3, Vec3, Vec4};
 use std::fmt::Write;
 
 /// Casts rays through volumes.
@@ -66,6 +67,8 @@ struct Variant {
     light_capacity: usize,
     /// Whether any volume is lit by its gradient, which costs more than the rest together.
     any_lit: bool,
+    /// Light volumes of all volumes together.
+    light_volumes: usize,
 }
 
 /// The lookup tables and brick distances of all volumes.
@@ -81,7 +84,7 @@ struct Tables {
 }
 
 /// Bricks in a row of their texture.
-const BRICK_ROW: u32 = 2048;
+pub(crate) const BRICK_ROW: u32 = 2048;
 
 mirror! {
     /// Mirror of `VolumeInstance` in `shaders/raycast.wgsl`.
@@ -104,6 +107,9 @@ mirror! {
         shininess: f32,
         sentinel: f32,
         reach: f32,
+        g: f32,
+        emission: f32,
+        first_sweep: u32,
         classification: u32,
         greatest_colour: f32,
         greatest_extinction: f32,
@@ -116,7 +122,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 const OTHER_TEXTURES: u32 = 3;
 
 /// Bindings of the shader in front of the volume textures.
-const FIXED_BINDINGS: u32 = 7;
+pub(crate) const FIXED_BINDINGS: usize = 7;
 
 type VolumeData<'a> = (
     Entity,
@@ -126,6 +132,8 @@ type VolumeData<'a> = (
     &'a Placement,
     &'a VolumeLighting,
     &'a RayCastSettings,
+    Option<&'a Shading>,
+    Option<&'a LightVolumes>,
     Option<&'a PreintegratedPairs>,
     Option<&'a ClassifiedVoxels>,
 );
@@ -140,6 +148,8 @@ type Volumes<'w, 's> = Query<
         &'static Placement,
         &'static VolumeLighting,
         &'static RayCastSettings,
+        Option<&'static Shading>,
+        Option<&'static LightVolumes>,
         Option<&'static PreintegratedPairs>,
         Option<&'static ClassifiedVoxels>,
     ),
@@ -162,7 +172,8 @@ fn run(
     let mut volumes: Vec<_> = volumes.iter().collect();
     volumes.sort_by_key(|volume| volume.0);
     let limit = gpu.device.limits().max_sampled_textures_per_shader_stage - OTHER_TEXTURES;
-    if let Some(problem) = too_many(&volumes, limit) {
+    let light_volumes = light_volumes(&volumes).len();
+    if let Some(problem) = too_many(&volumes, light_volumes, limit) {
         problems.0.push(problem);
         return;
     }
@@ -179,27 +190,28 @@ fn run(
     failure.keep(drawn);
 }
 
-/// What is told where volumes have more textures than can be bound.
-fn too_many(volumes: &[VolumeData], limit: u32) -> Option<Problem> {
-    let mut textures = 0;
-    let first = volumes.iter().position(|volume| {
-        textures += 1 + u32::from(classification_of(volume) != Classification::Post);
-        textures > limit
-    })?;
-    let textures =
-        if volumes.len() == textures as usize { String::new() } else { " textures of volumes".into() };
-    let message = format!(
-        "{} volumes are in the scene; this adapter can show {limit}{textures} at once",
-        volumes.len()
-    );
-    let help =
-        "merge volumes, leave some out, or classify them by `Post`, which takes one texture instead of two";
-    Some(Problem::error(message).help(help).on(volumes[first].0, "Volume"))
+/// What is told where volumes and their light volumes are more textures than can be bound.
+fn too_many(volumes: &[VolumeData], light_volumes: usize, limit: u32) -> Option<Problem> {
+    let classified =
+        volumes.iter().filter(|volume| classification_of(volume) != Classification::Post).count();
+    if volumes.len() + light_volumes + classified <= limit as usize {
+        return None;
+    }
+    let mut message = format!("{} volumes are in the scene", volumes.len());
+    if light_volumes > 0 {
+        message += &format!(", with {light_volumes} light volumes between them");
+    }
+    if classified > 0 {
+        message += &format!(", {classified} of them twice for their classification");
+    }
+    message += &format!("; this adapter can show {limit} at once");
+    let help = "merge volumes, leave some out, or classify them by `Post`; each volume that scatters has a light volume for each light";
+    Some(Problem::error(message).help(help).on(volumes[volumes.len() - 1].0, "Volume"))
 }
 
 /// How a volume is classified: as it asks, once what that takes is there.
 fn classification_of(volume: &VolumeData) -> Classification {
-    match (volume.2.classification, volume.7, volume.8) {
+    match (volume.2.classification, volume.9, volume.10) {
         (Classification::PreIntegrated, Some(_), _) => Classification::PreIntegrated,
         (Classification::Pre, _, Some(_)) => Classification::Pre,
         _ => Classification::Post,
@@ -216,9 +228,10 @@ fn prepare(
     report: &mut Report,
 ) -> Result<(), GpuError> {
     let filtering = volumes.iter().map(|volume| volume.3.format.filtering).collect();
-    let any_lit = volumes.iter().any(|volume| matches!(volume.5, VolumeLighting::Gradient { .. }));
+    let any_lit = volumes.iter().any(|volume| !matches!(volume.5, VolumeLighting::EmissionAbsorption));
+    let light_volumes = light_volumes(volumes).len();
     let classifications = volumes.iter().map(classification_of).collect();
-    let variant = Variant { filtering, classifications, light_capacity, any_lit };
+    let variant = Variant { filtering, classifications, light_capacity, any_lit, light_volumes };
     if caster.draw.as_ref().is_none_or(|(made_for, _)| *made_for != variant) {
         caster.draw = Some((variant.clone(), make(gpu, &variant)?));
         report.pipelines.push("raycast");
@@ -263,16 +276,20 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
         .filtering
         .iter()
         .map(|filtering| binding::texture(wgpu::TextureViewDimension::D3, *filtering == Filtering::Sampler));
+    let light_volumes = lookup::bindings(variant.light_volumes, lookup::filtering(gpu));
+    let first = FIXED_BINDINGS + variant.filtering.len();
+    let first_classified = first + light_volumes.len();
     let classified = classification::bindings(&variant.classifications);
-    let bindings: Vec<_> = fixed.into_iter().chain(textures).chain(classified).collect();
+    let bindings: Vec<_> = fixed.into_iter().chain(textures).chain(light_volumes).chain(classified).collect();
     Draw::new(
         gpu,
         &DrawDescriptor {
             name: "raycast",
             generated: &[
-                ("volumes", volumes_module(&variant.filtering, variant.any_lit)),
-                classifications_module(&variant.classifications),
+                ("volumes", volumes_module(&variant.filtering, variant.any_lit, FIXED_BINDINGS)),
+                classifications_module(&variant.classifications, first_classified),
                 lights_module(variant.light_capacity),
+                lookup::light_volumes_module(variant.light_volumes, lookup::filtering(gpu), first),
             ],
             entry_points: ("cover", "march"),
             bindings: &bindings,
@@ -283,14 +300,16 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
     )
 }
 
-/// The WGSL module `classifications`, whose textures are bound behind those of volumes.
-pub(crate) fn classifications_module(classifications: &[Classification]) -> (&'static str, String) {
-    let first_binding = FIXED_BINDINGS as usize + classifications.len();
+/// The WGSL module `classifications`, whose textures are bound behind all others.
+pub(crate) fn classifications_module(
+    classifications: &[Classification],
+    first_binding: usize,
+) -> (&'static str, String) {
     ("classifications", classification::module(classifications, first_binding))
 }
 
 /// The WGSL module `volumes`: one texture binding a volume, and `texel_at(volume, place)` that interpolates in it.
-pub(crate) fn volumes_module(filtering: &[Filtering], any_lit: bool) -> String {
+pub(crate) fn volumes_module(filtering: &[Filtering], any_lit: bool, first_binding: usize) -> String {
     let brick = BrickRanges::BRICK;
     let count = filtering.len();
     let mut text = format!(
@@ -298,7 +317,7 @@ pub(crate) fn volumes_module(filtering: &[Filtering], any_lit: bool) -> String {
     );
     let mut cases = String::new();
     for (index, filtering) in filtering.iter().enumerate() {
-        let binding = FIXED_BINDINGS as usize + index;
+        let binding = first_binding + index;
         let value = match filtering {
             Filtering::Sampler => format!("textureSampleLevel(volume_{index}, linear_sampler, place, 0.0).r"),
             Filtering::Shader => {
@@ -374,26 +393,41 @@ fn instances(
     caster: &RayCaster,
 ) -> Vec<VolumeInstance> {
     let starts = caster.tables.as_ref().map(|tables| tables.starts.as_slice()).unwrap_or_default();
-    volumes.iter().zip(starts).map(|(volume, start)| instance(view, settings, volume, *start)).collect()
+    let mut first_sweep = 0;
+    let mut all = Vec::new();
+    for (volume, start) in volumes.iter().zip(starts) {
+        all.push(instance(view, settings, volume, *start, first_sweep));
+        first_sweep += volume.8.map_or(0, |own| own.0.len() as u32);
+    }
+    all
 }
 
-fn instance(view: &View, settings: &SceneSettings, volume: &VolumeData, bricks_start: u32) -> VolumeInstance {
-    let (_, loaded, classified, texture, placement, lighting, ray_cast, _, voxels) = volume;
-    let extent = 2.0 * loaded.half_extent().as_dvec3() / f64::from(settings.millimetres_per_unit);
-    let entity_from_texture = DAffine3::from_scale(extent) * DAffine3::from_translation(DVec3::splat(-0.5));
-    let eye_from_texture = view.eye_from_scene * placement.0 * entity_from_texture;
+/// The light volumes of all volumes, in order.
+fn light_volumes<'a>(volumes: &[VolumeData<'a>]) -> Vec<&'a LightVolume> {
+    volumes.iter().filter_map(|volume| volume.8).flat_map(|own| &own.0).collect()
+}
+
+fn instance(
+    view: &View,
+    settings: &SceneSettings,
+    volume: &VolumeData,
+    bricks_start: u32,
+    first_sweep: u32,
+) -> VolumeInstance {
+    let (_, loaded, classified, texture, placement, lighting, ray_cast, shading, light_volumes, _, voxels) =
+        volume;
+    let eye_from_texture = view.eye_from_scene * scene_from_texture(loaded, placement, settings);
     let size = DVec3::from(loaded.data.size.map(f64::from));
     let axes = eye_from_texture.matrix3;
     let voxel =
         (axes.x_axis.length() / size.x).min(axes.y_axis.length() / size.y).min(axes.z_axis.length() / size.z);
     let (lookup_scale, lookup_offset) = classified.lookup(texture.format);
     let [greatest_colour, greatest_extinction] = voxels.map_or([1.0; 2], |voxels| voxels.greatest);
-    let (lighting, [ambient, diffuse, specular, shininess]) = match lighting {
-        VolumeLighting::EmissionAbsorption => (0, [0.0; 4]),
-        VolumeLighting::Gradient { ambient, diffuse, specular, shininess } => {
-            (1, [*ambient, *diffuse, *specular, *shininess])
-        }
-    };
+    let mut lit = Lit::of(&lighting_in_force(lighting, *shading, settings));
+    if lit.kind == SCATTERS && light_volumes.is_none_or(|own| own.0.is_empty()) {
+        // Nothing arrives where there is no light.
+        lit.kind = UNLIT;
+    }
     VolumeInstance {
         texture_from_eye: glam::DMat4::from(eye_from_texture.inverse()).as_mat4(),
         size: size.as_vec3(),
@@ -405,18 +439,65 @@ fn instance(view: &View, settings: &SceneSettings, volume: &VolumeData, bricks_s
         bricks: UVec3::from(classified.bricks),
         least_transmittance: 1.0 - ray_cast.early_termination,
         skip_empty: u32::from(ray_cast.skip_empty),
-        lighting,
-        ambient,
-        diffuse,
-        specular,
-        shininess,
+        lighting: lit.kind,
+        ambient: lit.ambient,
+        diffuse: lit.diffuse,
+        specular: lit.specular,
+        shininess: lit.shininess,
         sentinel: SENTINEL_THRESHOLD,
         reach: view.reach as f32,
+        g: lit.g,
+        emission: lit.emission,
+        first_sweep,
         classification: classification::number(classification_of(volume)),
         greatest_colour,
         greatest_extinction,
     }
 }
+
+/// Kinds of lighting, as the shader knows them.
+const EMITS: u32 = 0;
+const GRADIENT: u32 = 1;
+const SCATTERS: u32 = 2;
+const UNLIT: u32 = 3;
+
+/// A lighting as the shader knows it.
+#[derive(Default)]
+struct Lit {
+    kind: u32,
+    ambient: f32,
+    diffuse: f32,
+    specular: f32,
+    shininess: f32,
+    g: f32,
+    emission: f32,
+}
+
+impl Lit {
+    fn of(lighting: &VolumeLighting) -> Self {
+        match *lighting {
+            VolumeLighting::EmissionAbsorption => Self { kind: EMITS, ..Default::default() },
+            VolumeLighting::Gradient { ambient, diffuse, specular, shininess } => {
+                Self { kind: GRADIENT, ambient, diffuse, specular, shininess, ..Default::default() }
+            }
+            VolumeLighting::SingleScattering { g, .. } => Self { kind: SCATTERS, g, ..Default::default() },
+            VolumeLighting::LightVolume { g, emission, gradient_specular, .. } => {
+                let shininess = GRADIENT_SHININESS;
+                Self {
+                    kind: SCATTERS,
+                    g,
+                    emission,
+                    specular: gradient_specular,
+                    shininess,
+                    ..Default::default()
+                }
+            }
+        }
+    }
+}
+
+/// Blinn's exponent of highlights in light volumes.
+const GRADIENT_SHININESS: f32 = 16.0;
 
 #[expect(clippy::too_many_arguments, reason = "what one draw reads")]
 fn draw(
@@ -454,10 +535,13 @@ fn draw(
         wgpu::BindingResource::Sampler(sampler),
     ];
     resources.extend(volumes.iter().map(|volume| wgpu::BindingResource::TextureView(&volume.3.view)));
+    let light_volumes = light_volumes(volumes);
+    let (sweeps, repeating) = (lookup::sweeps(gpu, &light_volumes), lookup::sampler(gpu));
+    resources.extend(lookup::resources(&light_volumes, &sweeps, &repeating));
     let classified = volumes.iter().filter_map(|volume| match classification_of(volume) {
         Classification::Post => None,
-        Classification::Pre => volume.8.map(|voxels| &voxels.view),
-        Classification::PreIntegrated => volume.7.map(|pairs| &pairs.view),
+        Classification::Pre => volume.10.map(|voxels| &voxels.view),
+        Classification::PreIntegrated => volume.9.map(|pairs| &pairs.view),
     });
     resources.extend(classified.map(wgpu::BindingResource::TextureView));
     draw.cover(gpu, &resources, &target.view, timing);

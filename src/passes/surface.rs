@@ -5,6 +5,8 @@
 
 use super::body::Body;
 use super::combine::Radiosity;
+use super::light_volume::lookup;
+use super::light_volume::through::{self, Shading, VeilCount, Veils};
 use super::surface_points::SurfacePoints;
 use super::upload::MeshBuffers;
 use crate::components::{Phong, Placement, SceneSettings, Subsurface};
@@ -30,10 +32,17 @@ impl Plugin for SurfacePlugin {
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct Surface {
-    /// The pipelines, and the number of lights they are made for.
-    opaque: Option<(usize, Draw)>,
-    translucent: Option<(usize, Draw)>,
+    /// The pipelines, and what they are made for.
+    opaque: Option<(Variant, Draw)>,
+    translucent: Option<(Variant, Draw)>,
     targets: Option<Targets>,
+}
+
+/// What a pipeline is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Variant {
+    light_capacity: usize,
+    veils: VeilCount,
 }
 
 #[derive(Debug)]
@@ -65,6 +74,9 @@ mirror! {
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
+/// Bindings of the shader in front of those of light volumes.
+const FIXED_BINDINGS: usize = 3;
+
 type Meshes<'w, 's> = Query<
     'w,
     's,
@@ -94,7 +106,7 @@ fn run(
         Res<SceneSettings>,
     ),
     meshes: Meshes,
-    volumes: Query<(), With<super::upload::VolumeTexture>>,
+    (volumes, shading): (Query<(), With<super::upload::VolumeTexture>>, Shading),
     mut surface: ResMut<Surface>,
     mut timer: Option<ResMut<PassTimer>>,
     (mut report, mut failure): (ResMut<Report>, ResMut<Failure>),
@@ -106,7 +118,9 @@ fn run(
         return;
     }
     let timing = timer.as_mut().and_then(|timer| timer.time("surface"));
-    let drawn = draw(&gpu, &frame, &view, &picture, &settings, meshes, &mut surface, timing, &mut report);
+    let veils = Veils::gather(&shading, &settings, None);
+    let drawn =
+        draw(&gpu, &frame, &view, &picture, &settings, meshes, &veils, &mut surface, timing, &mut report);
     failure.keep(drawn);
 }
 
@@ -118,6 +132,7 @@ fn draw(
     picture: &Picture,
     settings: &SceneSettings,
     meshes: Meshes,
+    veils: &Veils,
     surface: &mut Surface,
     timing: Option<wgpu::RenderPassTimestampWrites>,
     report: &mut Report,
@@ -126,12 +141,12 @@ fn draw(
     let mut drawn: Vec<Drawn> = meshes.iter().map(|mesh| draw_of(view, mesh)).collect();
     drawn.sort_by_key(|mesh| mesh.radiosity.is_some());
     let is_translucent = |mesh: &Drawn| mesh.radiosity.is_some();
-    let capacity = frame.light_capacity;
+    let variant = Variant { light_capacity: frame.light_capacity, veils: veils.count() };
     if drawn.iter().any(|mesh| !is_translucent(mesh)) {
-        make(gpu, &mut surface.opaque, capacity, false, report)?;
+        make(gpu, &mut surface.opaque, variant, false, report)?;
     }
     if drawn.iter().any(is_translucent) {
-        make(gpu, &mut surface.translucent, capacity, true, report)?;
+        make(gpu, &mut surface.translucent, variant, true, report)?;
     }
     let Some(targets) = &surface.targets else { return Ok(()) };
     let instances: Vec<MeshInstance> = drawn.iter().map(|mesh| mesh.instance.clone()).collect();
@@ -143,11 +158,13 @@ fn draw(
     let mut pass = begin(&mut encoder, "surface", clear, &targets.colour.view, &targets.depth.view, timing);
     let one = std::num::NonZeroU64::new(MeshInstance::SHADER_SIZE.get());
     let instance = wgpu::BufferBinding { buffer: &instance_buffer, offset: 0, size: one };
-    let resources = [
+    let veil_buffers = veils.buffers(gpu, view.eye_from_scene.inverse());
+    let mut resources = vec![
         frame.frame.as_entire_binding(),
         frame.lights.as_entire_binding(),
         wgpu::BindingResource::Buffer(instance),
     ];
+    resources.extend(veils.resources(&veil_buffers));
     let mut triangles = 0;
     for (pipeline, translucent) in [(&surface.opaque, false), (&surface.translucent, true)] {
         let mut own =
@@ -175,12 +192,12 @@ fn draw(
 /// Makes a pipeline, unless the one that is there serves.
 fn make(
     gpu: &Gpu,
-    pipeline: &mut Option<(usize, Draw)>,
-    light_capacity: usize,
+    pipeline: &mut Option<(Variant, Draw)>,
+    variant: Variant,
     translucent: bool,
     report: &mut Report,
 ) -> Result<(), GpuError> {
-    if pipeline.as_ref().is_some_and(|(made_for, _)| *made_for == light_capacity) {
+    if pipeline.as_ref().is_some_and(|(made_for, _)| *made_for == variant) {
         return Ok(());
     }
     let vertices = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
@@ -189,16 +206,20 @@ fn make(
         false => (("transform", "shade"), &[&vertices]),
         true => (("transform_translucent", "shade_translucent"), &[&vertices, &radiosity]),
     };
+    let filtering = lookup::filtering(gpu);
+    let [light_volumes, veils] = through::modules(variant.veils, filtering, FIXED_BINDINGS);
+    let mut bindings = vec![binding::UNIFORM, binding::UNIFORM, binding::UNIFORM_EACH];
+    bindings.extend(through::bindings(variant.veils, filtering));
     let descriptor = DrawDescriptor {
         name: "surface",
-        generated: &[lights_module(light_capacity)],
+        generated: &[lights_module(variant.light_capacity), light_volumes, veils],
         entry_points,
-        bindings: &[binding::UNIFORM, binding::UNIFORM, binding::UNIFORM_EACH],
+        bindings: &bindings,
         vertex_buffers,
         format: FORMAT,
         depth: true,
     };
-    *pipeline = Some((light_capacity, Draw::new(gpu, &descriptor)?));
+    *pipeline = Some((variant, Draw::new(gpu, &descriptor)?));
     report.pipelines.push("surface");
     Ok(())
 }

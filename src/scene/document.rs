@@ -408,7 +408,8 @@ fn identity(path: &Path) -> PathBuf {
 }
 
 /// The fields of [`SceneSettings`].
-pub(super) const SETTINGS: [&str; 3] = ["millimetres_per_unit", "background", "shading"];
+pub(super) const SETTINGS: [&str; 5] =
+    ["millimetres_per_unit", "background", "shading", "meshes_shade_volumes", "volumes_shade_meshes"];
 
 /// A scene is written by hand; what is larger is not one.
 const MAX_SCENE_BYTES: u64 = 64 << 20;

@@ -1,0 +1,313 @@
+//! How much of each directional light arrives at each place of a volume.
+//!
+//! Reads volume textures and [`Classified`]; writes, for each volume whose lighting asks for it and each light, a [`LightVolume`], r32float:
+//! columns along the light, see [`sweep`]. Reruns for a volume when its data or transfer function changes, and for a light when it turns against
+//! the volume; a driver without memory fails it. Colours of lights and of transfer functions, the viewer and the step of rays change nothing.
+
+pub mod lookup;
+pub mod shadow;
+pub mod sweep;
+pub mod through;
+
+use super::classify::Classified;
+use super::gbuffer::Gbuffer;
+use super::light_gbuffer::Meshes;
+use super::raycast::{BRICK_ROW, volumes_module};
+use super::upload::{SENTINEL_THRESHOLD, VolumeTexture};
+use crate::components::{DirectionalLight, Motion, Placement, SceneSettings, Shading, VolumeLighting};
+use crate::gpu::{
+    Filtering, Gpu, GpuError, Grid, Invocations, Kernel, KernelDescriptor, PassTimer, binding, texture_of,
+    uniform_buffer,
+};
+use crate::loading::LoadedVolume;
+use crate::render::Failure;
+use crate::view::lights_in_order;
+use crate::{mirrors::mirror, report::Report};
+use bevy_ecs::change_detection::Tick;
+use bevy_ecs::prelude::*;
+use glam::{DAffine3, DVec3, UVec2, UVec3, Vec3};
+use shadow::Shadow;
+use sweep::Sweep;
+
+/// The light volumes of a volume, one for each light, in the order of the lights.
+#[derive(Component, Debug, Default)]
+pub(crate) struct LightVolumes(pub Vec<LightVolume>);
+
+/// What one light sends into a volume.
+#[derive(Debug)]
+pub(crate) struct LightVolume {
+    /// The light.
+    pub light: Entity,
+    /// Mean extinction along the light, see `light_volume.wgsl`.
+    pub grid: Grid,
+    /// Where its columns are.
+    pub sweep: Sweep,
+    /// What it was made from.
+    recipe: Recipe,
+    /// Counts up whenever the texels change.
+    pub version: u64,
+}
+
+/// Everything that the texels depend on.
+#[derive(Clone, Debug, PartialEq)]
+struct Recipe {
+    sweep: Sweep,
+    /// Scene units that light travels from slice to slice.
+    slice: f64,
+    volume: wgpu::TextureView,
+    classified: Tick,
+    shadow: Option<Shadow>,
+}
+
+/// What the pass keeps between frames.
+#[derive(Resource, Default, Debug)]
+pub(crate) struct LightSweeper {
+    kernels: Vec<(Filtering, Kernel)>,
+    version: u64,
+}
+
+mirror! {
+    /// Mirror of `Extinction` in `shaders/light_volume.wgsl`.
+    "light_volume":
+    pub(crate) struct ExtinctionUniform as "Extinction" {
+        lookup_scale: f32,
+        lookup_offset: f32,
+        last: f32,
+        sentinel: f32,
+        size: Vec3,
+        segment: f32,
+        bricks: UVec3,
+        segments: u32,
+    }
+}
+
+/// Format of a light volume.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+
+/// The bindings of the kernel in front of the volume.
+const FIRST_VOLUME: usize = 8;
+
+/// The lighting of a volume, with `Shading` taken into account.
+pub(crate) fn lighting_in_force(
+    lighting: &VolumeLighting,
+    shading: Option<&Shading>,
+    settings: &SceneSettings,
+) -> VolumeLighting {
+    match shading.unwrap_or(&settings.shading) {
+        Shading::Scattering => lighting.clone(),
+        Shading::Local => lighting.local(),
+    }
+}
+
+type Volumes<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static LoadedVolume,
+        Ref<'static, Classified>,
+        &'static VolumeTexture,
+        &'static Placement,
+        &'static VolumeLighting,
+        Option<&'static Shading>,
+        Option<&'static mut LightVolumes>,
+    ),
+>;
+
+pub(crate) fn run(
+    mut commands: Commands,
+    (gpu, settings): (Res<Gpu>, Res<SceneSettings>),
+    (mut volumes, meshes): (Volumes, Meshes),
+    lights: Query<(Entity, &DirectionalLight, Option<&Motion>)>,
+    (mut sweeper, mut gbuffer): (ResMut<LightSweeper>, ResMut<Gbuffer>),
+    (mut timer, mut report, mut failure): (Option<ResMut<PassTimer>>, ResMut<Report>, ResMut<Failure>),
+) {
+    let lights = lights_in_order(&lights);
+    let mut held = 0;
+    for (entity, loaded, classified, texture, placement, lighting, shading, mut kept) in &mut volumes {
+        let lighting = lighting_in_force(lighting, shading, &settings);
+        let Some(resolution) = lighting.light_resolution() else {
+            if kept.is_some() {
+                commands.entity(entity).remove::<LightVolumes>();
+            }
+            continue;
+        };
+        let scene_from_texture = scene_from_texture(loaded, placement, &settings);
+        let texture_from_scene = scene_from_texture.inverse();
+        let mut own = LightVolumes::default();
+        let all = kept.as_mut().map_or(&mut own, |kept| kept.bypass_change_detection());
+        let mut old = std::mem::take(&mut all.0);
+        for (light, to_light) in &lights {
+            let cells = cells(&gpu, loaded.data.size, resolution);
+            let direction = texture_from_scene.transform_vector3(-*to_light);
+            let sweep = Sweep::new(cells, direction);
+            let slice = scene_from_texture.transform_vector3(sweep.step()).length();
+            let shadow = settings
+                .meshes_shade_volumes
+                .then(|| Shadow::of(loaded, placement, &settings, *to_light, entity, &meshes));
+            let recipe = Recipe {
+                sweep,
+                slice,
+                volume: texture.view.clone(),
+                classified: classified.last_changed(),
+                shadow: shadow.flatten(),
+            };
+            let found =
+                old.iter().position(|volume| volume.light == *light).map(|index| old.swap_remove(index));
+            if let Some(found) = found.filter(|found| found.recipe == recipe) {
+                held += found.grid.bytes();
+                all.0.push(found);
+                continue;
+            }
+            let timing = timer.as_mut().and_then(|timer| timer.time_compute("light_volume"));
+            let source = Source { loaded, classified: &classified, texture, texture_from_scene };
+            match make(&gpu, &mut sweeper, &mut gbuffer, &source, &recipe, timing, &mut report) {
+                Ok(grid) => {
+                    sweeper.version += 1;
+                    held += grid.bytes();
+                    all.0.push(LightVolume { light: *light, grid, sweep, recipe, version: sweeper.version });
+                }
+                Err(error) => failure.keep(Err(error)),
+            }
+        }
+        if kept.is_none() {
+            commands.entity(entity).insert(own);
+        }
+    }
+    report.hold("light_volume", held);
+}
+
+/// Takes the texture of a volume, 0 to 1 along each axis, to the scene.
+pub(crate) fn scene_from_texture(
+    loaded: &LoadedVolume,
+    placement: &Placement,
+    settings: &SceneSettings,
+) -> DAffine3 {
+    let extent = 2.0 * loaded.half_extent().as_dvec3() / f64::from(settings.millimetres_per_unit);
+    placement.0 * DAffine3::from_scale(extent) * DAffine3::from_translation(DVec3::splat(-0.5))
+}
+
+/// Cells along each axis of a volume.
+fn cells(gpu: &Gpu, size: [u32; 3], resolution: f32) -> UVec3 {
+    // Columns beside the volume and the last slice take part of the texture.
+    let limit = gpu.device.limits().max_texture_dimension_3d - 8;
+    let along = |voxels: u32| ((f64::from(voxels) * f64::from(resolution)).ceil() as u32).clamp(1, limit);
+    UVec3::from(size.map(along))
+}
+
+/// The volume that a light volume is made of.
+struct Source<'a> {
+    loaded: &'a LoadedVolume,
+    classified: &'a Classified,
+    texture: &'a VolumeTexture,
+    texture_from_scene: DAffine3,
+}
+
+fn make(
+    gpu: &Gpu,
+    sweeper: &mut LightSweeper,
+    gbuffer: &mut Gbuffer,
+    source: &Source,
+    recipe: &Recipe,
+    timing: Option<wgpu::ComputePassTimestampWrites>,
+    report: &mut Report,
+) -> Result<Grid, GpuError> {
+    let Source { loaded, classified, texture, texture_from_scene } = source;
+    let filtering = texture.format.filtering;
+    let size = recipe.sweep.size();
+    let grid = Grid::new(gpu, "light volume", size, FORMAT)?;
+    let voxels = DVec3::from(loaded.data.size.map(f64::from));
+    // No segment is longer than a voxel, so that nothing which rays see is missed.
+    let segments = (recipe.sweep.step() * voxels).abs().max_element().ceil().max(1.0);
+    let (low, high) = classified.domain;
+    let extinction = ExtinctionUniform {
+        lookup_scale: texture.format.scale / (high - low),
+        lookup_offset: (texture.format.offset - low) / (high - low),
+        last: (classified.table.entries.len() - 1) as f32,
+        sentinel: SENTINEL_THRESHOLD,
+        size: voxels.as_vec3(),
+        segment: (recipe.slice / segments) as f32,
+        bricks: UVec3::from(classified.bricks),
+        segments: segments as u32,
+    };
+    let columns = uniform_buffer(gpu, "columns", &recipe.sweep.columns());
+    let extinction = uniform_buffer(gpu, "extinction", &extinction);
+    let table: Vec<f32> = classified.table.entries.iter().map(|entry| entry.w).collect();
+    let table_size = UVec2::new(table.len() as u32, 1);
+    let table = texture_of(gpu, "extinction table", table_size, FORMAT, bytemuck::cast_slice(&table));
+    let bricks = brick_texture(gpu, &classified.distances);
+    let sampler = linear_sampler(gpu);
+    let (shadow, shadow_map) =
+        shadow::draw(gpu, gbuffer, recipe.shadow.as_ref(), *texture_from_scene, report)?;
+    let resources = [
+        columns.as_entire_binding(),
+        extinction.as_entire_binding(),
+        wgpu::BindingResource::TextureView(&table.create_view(&Default::default())),
+        wgpu::BindingResource::TextureView(&bricks.create_view(&Default::default())),
+        wgpu::BindingResource::Sampler(&sampler),
+        wgpu::BindingResource::TextureView(&grid.view),
+        shadow.as_entire_binding(),
+        wgpu::BindingResource::TextureView(&shadow_map),
+        wgpu::BindingResource::TextureView(&texture.view),
+    ];
+    let kernel = sweeper.kernel(gpu, filtering, report)?;
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    kernel.run(gpu, &mut encoder, &resources, Invocations::Count(size.x * size.y), timing);
+    gpu.queue.submit([encoder.finish()]);
+    report.ran("light_volume", &[("texels", size.to_array().into_iter().map(u64::from).product())]);
+    Ok(grid)
+}
+
+impl LightSweeper {
+    /// The kernel, made when it is first asked for.
+    fn kernel(&mut self, gpu: &Gpu, filtering: Filtering, report: &mut Report) -> Result<&Kernel, GpuError> {
+        let known = self.kernels.iter().position(|(made_for, _)| *made_for == filtering);
+        let index = match known {
+            Some(index) => index,
+            None => {
+                let bindings = [
+                    binding::UNIFORM,
+                    binding::UNIFORM,
+                    binding::TEXTURE,
+                    binding::INTEGERS,
+                    binding::SAMPLER,
+                    binding::GRID_OUT,
+                    binding::UNIFORM,
+                    binding::TEXTURE,
+                    binding::texture(wgpu::TextureViewDimension::D3, filtering == Filtering::Sampler),
+                ];
+                let kernel = Kernel::new(
+                    gpu,
+                    &KernelDescriptor {
+                        name: "light_volume",
+                        generated: &[("volumes", volumes_module(&[filtering], false, FIRST_VOLUME))],
+                        entry_point: "sweep",
+                        bindings: &bindings,
+                    },
+                )?;
+                report.pipelines.push("light_volume");
+                self.kernels.push((filtering, kernel));
+                self.kernels.len() - 1
+            }
+        };
+        Ok(&self.kernels[index].1)
+    }
+}
+
+/// The distances of bricks in rows.
+fn brick_texture(gpu: &Gpu, distances: &[u8]) -> wgpu::Texture {
+    let mut rows = distances.to_vec();
+    rows.resize(rows.len().next_multiple_of(BRICK_ROW as usize), 0);
+    let size = UVec2::new(BRICK_ROW, (rows.len() / BRICK_ROW as usize) as u32);
+    texture_of(gpu, "brick distances", size, wgpu::TextureFormat::R8Uint, &rows)
+}
+
+/// A sampler that interpolates linearly and clamps.
+fn linear_sampler(gpu: &Gpu) -> wgpu::Sampler {
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("linear"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
+    })
+}

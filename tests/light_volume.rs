@@ -1,0 +1,160 @@
+//! The light that arrives in volumes and is scattered there, against values that are known exactly.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod support;
+
+use support::{Studio, middle};
+
+/// A slab 1 mm thick and so wide that its sides do not count, across z, lit from above.
+fn slab(studio: &Studio, voxels: usize, tau: f64, albedo: f64, lighting: &str) -> String {
+    studio.volume("slab.raw", [4, 4, voxels], |_| 0.5);
+    // Over a hundredth of the thickness: an opacity of 1 within rounding would lose how thick the slab is.
+    let opacity = -(-tau / 100.0).exp_m1();
+    format!(
+        "\"slab\": (
+            Volume: Raw(path: \"slab.raw\", size: (4, 4, {voxels}), format: F32, spacing: (500.0, 500.0, {:?})),
+            TransferFunction: (domain: (0.0, 1.0), points: [(0.0, ({albedo:?}, {albedo:?}, {albedo:?}), {opacity:.17})], opacity_length: 0.01),
+            VolumeLighting: {lighting},
+            RayCast: (step: 0.25, early_termination: 1.0),
+        ),",
+        1.0 / voxels as f64
+    )
+}
+
+/// A camera that looks against a direction of travel, onto the middle of the slab.
+fn eye(direction: [f64; 3]) -> String {
+    let [x, y, z] = direction.map(|part| part * 50.0);
+    format!(
+        "\"eye\": ( ViewCamera: (eye: ({x:?}, {y:?}, {z:?}), up: (0.6, 0.8, 0.0), projection: Orthographic(height: 0.01)) ),"
+    )
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn light_scattered_once_leaves_slabs_as_the_closed_form_says() {
+    let cases: serde_json::Value =
+        serde_json::from_str(include_str!("truth/single_scatter_radiance.json")).unwrap();
+    let mut studio = Studio::new();
+    let mut worst = (0.0, String::new());
+    for case in cases["cases"].as_array().unwrap() {
+        let number = |name: &str| case[name].as_f64().unwrap();
+        let (mu0, mu, phi) = (number("mu0"), number("mu"), number("dphi"));
+        let (sine0, sine) = ((1.0 - mu0 * mu0).sqrt(), (1.0 - mu * mu).sqrt());
+        let slab = slab(
+            &studio,
+            128,
+            number("tau"),
+            number("albedo"),
+            &format!("SingleScattering(g: {:?})", number("g").clamp(-0.999, 0.999)),
+        );
+        for (name, side) in [("L_reflected", 1.0), ("L_transmitted", -1.0)] {
+            let scene = format!(
+                "(entities: {{ {} {slab} \"light\": ( DirectionalLight: (direction: ({sine0:?}, 0.0, {:?})) ) }})",
+                eye([sine * phi.cos(), sine * phi.sin(), side * mu]),
+                -mu0
+            );
+            let seen = f64::from(middle(&studio.radiance(&scene, 1, 1))[0]);
+            // Less than 1e-30 is next to nothing for 32 bits.
+            let error = (seen - number(name)).abs() / number(name).max(1e-30);
+            if error > worst.0 {
+                worst = (error, format!("{} {name}: {seen}, expected {}", case["id"], number(name)));
+            }
+        }
+    }
+    eprintln!("worst relative error: {worst:?}");
+    assert!(worst.0 < 0.01, "{worst:?}");
+}
+
+/// A box of one medium, turned and stretched, with light from an edge: what arrives at each place is known.
+struct Block {
+    size: [f64; 3],
+    sigma: f64,
+    to_light: [f64; 3],
+    to_eye: [f64; 3],
+}
+
+impl Block {
+    /// The way from a place inside to the surface.
+    fn way_out(&self, place: [f64; 3], direction: [f64; 3]) -> f64 {
+        let along = |axis: usize| {
+            let half = self.size[axis] / 2.0;
+            if direction[axis] == 0.0 {
+                f64::INFINITY
+            } else {
+                (half.copysign(direction[axis]) - place[axis]) / direction[axis]
+            }
+        };
+        (0..3).map(along).fold(f64::INFINITY, f64::min).max(0.0)
+    }
+
+    /// Radiance of the ray through a point that lies in front of the block.
+    fn radiance(&self, through: [f64; 3]) -> f64 {
+        const STEPS: usize = 20_000;
+        let at = |t: f64| [0, 1, 2].map(|axis| through[axis] - self.to_eye[axis] * t);
+        let inside = |place: [f64; 3]| (0..3).all(|axis| place[axis].abs() <= self.size[axis] / 2.0);
+        let length: f64 = 4.0 * self.size.iter().sum::<f64>();
+        let step = length / STEPS as f64;
+        let places = (0..STEPS).map(|index| at((index as f64 + 0.5) * step)).filter(|place| inside(*place));
+        let here = |place| {
+            (-self.sigma * (self.way_out(place, self.to_light) + self.way_out(place, self.to_eye))).exp()
+        };
+        places.map(here).sum::<f64>() * step * self.sigma / (4.0 * std::f64::consts::PI)
+    }
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn light_in_a_block_is_exact_to_its_edges_at_every_resolution() {
+    let mut studio = Studio::new();
+    let unit = |v: [f64; 3]| v.map(|part| part / v.iter().map(|part| part * part).sum::<f64>().sqrt());
+    let directions = [
+        [1.0, 1.0, 1.0],
+        [0.0, 1.0, 0.0],
+        [1.0, -1.0, 0.0],
+        [-0.3, 0.2, -0.9],
+        [0.02, 0.03, 1.0],
+        [-1.0, 0.9, 0.89],
+    ];
+    studio.volume("block.raw", [16, 12, 5], |_| 0.5);
+    let mut worst = (0.0, String::new());
+    for to_light in directions.map(unit) {
+        let block = Block { size: [4.0, 3.0, 5.0], sigma: 0.6, to_light, to_eye: unit([0.5, 0.3, 1.0]) };
+        for resolution in [1.0, 0.3, 0.125] {
+            let [x, y, z] = to_light.map(|part| -part);
+            let [ex, ey, ez] = block.to_eye.map(|part| part * 20.0);
+            let scene = format!(
+                "(entities: {{ \"eye\": ( ViewCamera: (eye: ({ex:?}, {ey:?}, {ez:?}), projection: Orthographic(height: 7.0)) ),
+                    \"light\": ( DirectionalLight: (direction: ({x:?}, {y:?}, {z:?})) ),
+                    \"block\": (
+                        Volume: Raw(path: \"block.raw\", size: (16, 12, 5), format: F32, spacing: (0.25, 0.25, 1.0)),
+                        TransferFunction: (domain: (0.0, 1.0), points: [(0.0, (1.0, 1.0, 1.0), {:?})], opacity_length: 1.0),
+                        VolumeLighting: SingleScattering(resolution: {resolution:?}), RayCast: (step: 0.2, early_termination: 1.0) ) }})",
+                -(-block.sigma).exp_m1()
+            );
+            let (width, height) = (33, 33);
+            let seen = studio.radiance(&scene, width, height);
+            let right = unit([block.to_eye[2], 0.0, -block.to_eye[0]]);
+            let [a, b] = [block.to_eye, right];
+            let up = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+            let brightest = seen.iter().map(|pixel| pixel[0]).fold(0.0, f32::max);
+            for (index, pixel) in seen.iter().enumerate() {
+                let across = 7.0 * ((index % 33) as f64 + 0.5 - 16.5) / 33.0;
+                let above = 7.0 * (16.5 - (index / 33) as f64 - 0.5) / 33.0;
+                let through =
+                    [0, 1, 2].map(|axis| right[axis] * across + up[axis] * above + block.to_eye[axis] * 12.0);
+                let error = (f64::from(pixel[0]) - block.radiance(through)).abs() / f64::from(brightest);
+                if error > worst.0 {
+                    worst = (
+                        error,
+                        format!(
+                            "{to_light:?}, resolution {resolution}, pixel {index}: {pixel:?}, {}",
+                            block.radiance(through)
+                        ),
+                    );
+                }
+            }
+        }
+    }
+    eprintln!("worst error, as a share of the brightest pixel: {worst:?}");
+    assert!(worst.0 < 4e-3, "{worst:?}");
+}
