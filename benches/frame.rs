@@ -1,4 +1,4 @@
-//! What a frame costs, part by part: reading, scanning, drawing. `cargo bench --bench frame`.
+//! What a frame costs, part by part: reading, scanning, drawing, pre-integrating. `cargo bench --bench frame`.
 //!
 //! Compare with `cargo bench --bench frame -- --baseline NAME` after `--save-baseline NAME`; absolute times say little on a shared machine.
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
@@ -9,7 +9,10 @@ use glam::{UVec2, Vec3};
 use std::fmt::Write;
 use std::hint::black_box;
 use std::path::Path;
+use tyndall::components::{ControlPoint, TransferFunction};
 use tyndall::gpu::{Gpu, GpuOptions};
+use tyndall::optics::preintegration::Preintegration;
+use tyndall::optics::transfer::LookupTable;
 use tyndall::sources::{Samples, VolumeData};
 use tyndall::{Picture, TyndallPlugins, render};
 
@@ -92,6 +95,33 @@ fn volume(lighting: &str) -> String {
     )
 }
 
+/// Tables of all pairs of values, whole and after a change of one entry in the middle.
+fn pre_integrate(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("pre-integrate");
+    group.sample_size(10);
+    for entries in [256, 512, 1024] {
+        let points = (0..=20).map(|at| {
+            let place = at as f32 / 20.0;
+            ControlPoint(place, Vec3::new(place, 0.5, 1.0 - place), 0.1 + 0.4 * (place * 9.0).sin().abs())
+        });
+        let function = TransferFunction { points: points.collect(), entries, ..Default::default() };
+        let table = LookupTable::new(&function, (0.0, 255.0), 1.0, 1.0);
+        group.bench_function(BenchmarkId::new("whole", entries), |bench| {
+            bench.iter(|| Preintegration::new(black_box(&table), 1.0));
+        });
+        let mut tables = [table.clone(), table.clone()];
+        tables[1].entries[entries as usize / 2].w *= 2.0;
+        let mut made = Preintegration::new(&table, 1.0);
+        group.bench_function(BenchmarkId::new("after a change of its middle", entries), |bench| {
+            bench.iter(|| {
+                tables.swap(0, 1);
+                made.update(&tables[1], &tables[0])
+            });
+        });
+    }
+    group.finish();
+}
+
 fn load(app: &mut App, folder: &Path, entities: &str) {
     let path = folder.join("scene.ron");
     let text = format!(
@@ -102,5 +132,5 @@ fn load(app: &mut App, folder: &Path, entities: &str) {
     assert!(!document.has_errors(), "{:#?}", document.problems);
 }
 
-criterion_group!(benches, scan, read, draw);
+criterion_group!(benches, scan, read, draw, pre_integrate);
 criterion_main!(benches);

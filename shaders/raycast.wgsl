@@ -2,9 +2,9 @@
 //
 // Each volume is cut along the ray into segments of its own step. A segment of length d at the middle of which the field has the
 // value v absorbs alpha = 1 - exp(-sigma_t(v) d) and emits colour(v) alpha (Max 1995); segments are put together front to back. The
-// error is of second order in the step.
+// error is of second order in the step. So it is with `Post`; what `Pre` and `PreIntegrated` make of a segment is in shared/classify.wgsl.
 //
-// reads  volume textures, lookup tables (colour, sigma_t per scene unit), brick distances, surface
+// reads  volume textures, lookup tables (colour, sigma_t per scene unit), brick distances, surface; classified voxels, pre-integrated pairs
 //        (all as textures and uniforms: software adapters read storage buffers one lane at a time)
 // writes rgba32float: radiance, number of samples taken
 
@@ -16,6 +16,7 @@
 #import volumes
 #import light_volumes
 #import scattered
+#import classify
 
 struct VolumeInstance {
     texture_from_eye: mat4x4f,
@@ -55,6 +56,11 @@ struct VolumeInstance {
     fluence_scale: f32,
     // From eye space to cosines with the axes of the volume.
     axes: mat3x3f,
+    // 0 Post, 1 Pre, 2 PreIntegrated.
+    classification: u32,
+    // What classified voxels are shares of.
+    greatest_colour: f32,
+    greatest_extinction: f32,
 }
 
 // Where a ray is within one volume.
@@ -248,6 +254,7 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let enter = marches[index].enter;
         let leave = marches[index].leave;
         let count = marches[index].count;
+        let integrated = ANY_PRE_INTEGRATED && volume.classification == PRE_INTEGRATED;
         let lookup = Lookup(f32(volume.table_entries - 1u), volume.lookup_scale, volume.lookup_offset, volume.sentinel);
         let direction = (volume.texture_from_eye * vec4f(ray.direction, 0.0)).xyz;
         let start = (volume.texture_from_eye * vec4f(ray.origin, 1.0)).xyz + direction * enter;
@@ -264,7 +271,8 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                 if volume.skip_empty == 0u || done >= turn {
                     break;
                 }
-                let at = clamp(start * bricks + pace * (done + 0.5), vec3f(0.0), top);
+                // A segment is looked at in its middle, or at both ends: then all of it is to be in empty bricks.
+                let at = clamp(start * bricks + pace * (done + select(0.5, 0.0, integrated)), vec3f(0.0), top);
                 let brick = floor(at);
                 let reach = brick_distance(volume.bricks, volume.bricks_start, vec3u(brick));
                 if reach == 0.0 {
@@ -272,9 +280,18 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                 }
                 let wall = select(brick - (reach - 1.0), brick + reach, pace > vec3f(0.0));
                 let walls = (wall - at) / pace;
-                done += max(1.0, ceil(min(walls.x, min(walls.y, walls.z)) - 1e-3));
+                let wall_distance = min(walls.x, min(walls.y, walls.z)) - 1e-3;
+                if integrated && wall_distance < 1.0 {
+                    break;
+                }
+                done += select(max(1.0, ceil(wall_distance)), floor(wall_distance), integrated);
             }
             let end = min(done + RUN, turn);
+            var front = 0.0;
+            var back = 0.0;
+            if integrated {
+                back = texel_at(index, start + direction * (done * volume.step));
+            }
             loop {
                 if done >= end {
                     break;
@@ -286,18 +303,35 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                 // The next sample that absorbs: where it is lit, which costs most, all lanes are to have one.
                 loop {
                     length = min(volume.step, leave - enter - done * volume.step);
-                    place = start + direction * (done * volume.step + 0.5 * length);
-                    texel = texel_at(index, place);
-                    entry = look_up(index, lookup, texel);
+                    if integrated {
+                        front = back;
+                        back = texel_at(index, start + direction * (done * volume.step + length));
+                        entry = pre_integrated(index, lookup, front, back, length / volume.step);
+                    } else {
+                        place = start + direction * (done * volume.step + 0.5 * length);
+                        if ANY_PRE && volume.classification == PRE {
+                            entry = pre_classified(index, place, volume.greatest_colour, volume.greatest_extinction);
+                        } else {
+                            texel = texel_at(index, place);
+                            entry = look_up(index, lookup, texel);
+                        }
+                    }
                     done += 1.0;
                     samples += 1.0;
                     if !ANY_LIT || entry.a > 0.0 || done >= end {
                         break;
                     }
                 }
-                let alpha = absorbed(entry.a * volume.reach * length);
+                let alpha = absorbed(entry.a * select(volume.reach * length, 1.0, integrated));
                 var colour = entry.rgb;
                 if ANY_LIT {
+                    if integrated {
+                        let part = surface_in(index, lookup, front, back);
+                        place = start + direction * ((done - 1.0) * volume.step + part * length);
+                        texel = mix(front, back, part);
+                    } else if ANY_PRE && volume.classification == PRE {
+                        texel = texel_at(index, place);
+                    }
                     colour = source(index, volume, colour, place, texel, ray);
                 }
                 radiance += transmittance * alpha * colour;

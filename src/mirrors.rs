@@ -63,6 +63,7 @@ pub fn all() -> Vec<Mirror> {
         passes::light_cells::CellsUniform::mirror(),
         passes::light_volume::SegmentsUniform::mirror(),
         passes::light_volume::medium::ClassifiedUniform::mirror(),
+        passes::preclassify::VoxelsUniform::mirror(),
         passes::light_volume::shadow::ShadowUniform::mirror(),
         passes::light_volume::sweep::ColumnsUniform::mirror(),
         passes::light_volume::sweep::SweepUniform::mirror(),
@@ -75,16 +76,17 @@ pub fn all() -> Vec<Mirror> {
 }
 
 /// The modules of shaders that are made as the scene needs them, for one that needs all variants: two volumes, of which the sampler
-/// interpolates one and the shader the other.
+/// interpolates one and the shader the other, and which are classified in different ways.
 pub fn generated_modules() -> Vec<(&'static str, String)> {
+    use crate::components::Classification::{Pre, PreIntegrated};
     use crate::gpu::Filtering::{Sampler, Shader};
     let count = passes::light_volume::through::VeilCount { volumes: 2, lights: 1 };
-    // Behind the bindings of every shader.
-    let first_volume = 20;
-    let first = first_volume + 2;
+    // Behind the bindings of every shader that has these modules.
+    let (volumes, first, classified) = (16, 18, 32);
     let [light_volumes, veils] = passes::light_volume::through::modules(count, Sampler, first);
     vec![
-        ("volumes", passes::raycast::volumes_module(&[Sampler, Shader], true, first_volume)),
+        ("volumes", passes::raycast::volumes_module(&[Sampler, Shader], true, volumes)),
+        passes::raycast::classifications_module(&[Pre, PreIntegrated], classified),
         view::lights_module(4),
         light_volumes,
         veils,

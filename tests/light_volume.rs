@@ -202,11 +202,22 @@ fn slabs_reflect_and_transmit_what_they_should() {
                 }
             }
         }
-        rows.push((number("R"), number("T_scattered"), fluxes, format!("tau {tau} albedo {albedo} g {} mu0 {mu0}", number("g"))));
+        rows.push((
+            number("R"),
+            number("T_scattered"),
+            fluxes,
+            format!("tau {tau} albedo {albedo} g {} mu0 {mu0}", number("g")),
+        ));
     }
-    let mean = |error: &dyn Fn(&(f64, f64, [f64; 2], String)) -> f64| rows.iter().map(error).sum::<f64>() / rows.len() as f64;
+    let mean = |error: &dyn Fn(&(f64, f64, [f64; 2], String)) -> f64| {
+        rows.iter().map(error).sum::<f64>() / rows.len() as f64
+    };
     for (r, t, [seen_r, seen_t], name) in &rows {
-        eprintln!("{name}: R {seen_r:.4} of {r:.4} ({:+.1} %), T {seen_t:.4} of {t:.4} ({:+.1} %)", 100.0 * (seen_r / r - 1.0), 100.0 * (seen_t / t - 1.0));
+        eprintln!(
+            "{name}: R {seen_r:.4} of {r:.4} ({:+.1} %), T {seen_t:.4} of {t:.4} ({:+.1} %)",
+            100.0 * (seen_r / r - 1.0),
+            100.0 * (seen_t / t - 1.0)
+        );
     }
     let errors = [mean(&|row| (row.2[0] / row.0 - 1.0).abs()), mean(&|row| (row.2[1] / row.1 - 1.0).abs())];
     eprintln!("mean relative errors of reflectance and scattered transmittance: {errors:?}");

@@ -17,6 +17,7 @@ fn shaders() -> Vec<(&'static str, naga::Module, String)> {
         "combine",
         "surface",
         "light_cells",
+        "preclassify",
         "light_volume",
         "scattered_light",
         "summed_light",

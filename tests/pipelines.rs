@@ -17,8 +17,9 @@ fn noop(options: &GpuOptions) -> Gpu {
     pollster::block_on(Gpu::from_adapter(&adapter, options)).unwrap()
 }
 
-/// A pipeline for each use: opaque and translucent surfaces; points, texels and unseen points.
-const EXPECTED: [&str; 11] = [
+/// A pipeline for each use: classified voxels; opaque and translucent surfaces; points, texels and unseen points.
+const EXPECTED: [&str; 12] = [
+    "preclassify",
     "gbuffer",
     "scattering_texels",
     "scattered_radiosity",
@@ -43,7 +44,10 @@ fn every_pass_has_valid_pipelines_and_bindings() {
             \"wax\": ( Mesh: Sphere(), Subsurface: () ),
             \"published\": ( Mesh: Sphere(), Subsurface: (model: StandardDipole), ScatteringMaps: (strategy: Uniform) ),
             \"a\": ( {volume} ), \"b\": ( {volume}, VolumeLighting: Gradient() ),
-            \"c\": ( Volume: Raw(path: \"v.raw\", size: (4, 4, 1), format: F32) ) }})"
+            \"c\": ( Volume: Raw(path: \"v.raw\", size: (4, 4, 1), format: F32) ),
+            \"d\": ( {volume}, TransferFunction: (entries: 64, iso: [(value: 3.0, width: 0.0)], classification: PreIntegrated) ),
+            \"e\": ( {volume}, TransferFunction: (classification: Pre) ),
+            \"f\": ( Volume: Raw(path: \"v.raw\", size: (4, 4, 1), format: F32), TransferFunction: (classification: Pre) ) }})"
     );
     std::fs::write(&scene, text).unwrap();
     for portable in [false, true] {

@@ -176,6 +176,12 @@ pub mod binding {
         format: wgpu::TextureFormat::Rgba32Float,
         view_dimension: wgpu::TextureViewDimension::D2Array,
     };
+    /// A 3D texture, rgba16float, that a kernel writes.
+    pub const VOXELS_OUT: wgpu::BindingType = wgpu::BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format: wgpu::TextureFormat::Rgba16Float,
+        view_dimension: wgpu::TextureViewDimension::D3,
+    };
     /// A 2D texture of unsigned integers.
     pub const INTEGERS: wgpu::BindingType = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Uint,

@@ -16,6 +16,7 @@ macro_rules! sources {
 sources! {
     "bssrdf" => "shared/bssrdf.wgsl",
     "classified" => "shared/classified.wgsl",
+    "classify" => "shared/classify.wgsl",
     "combine" => "combine.wgsl",
     "dimmed_gbuffer" => "dimmed_gbuffer.wgsl",
     "estimator" => "shared/estimator.wgsl",
@@ -28,6 +29,7 @@ sources! {
     "light_volume" => "light_volume.wgsl",
     "maps" => "shared/maps.wgsl",
     "phase" => "shared/phase.wgsl",
+    "preclassify" => "preclassify.wgsl",
     "raycast" => "raycast.wgsl",
     "sampling_adaptive" => "shared/sampling_adaptive.wgsl",
     "sampling_uniform" => "shared/sampling_uniform.wgsl",

@@ -10,6 +10,7 @@ pub mod materials;
 pub mod medium;
 pub mod moments;
 pub mod phase;
+pub mod preintegration;
 mod quadrature;
 pub mod sampling;
 pub mod transfer;

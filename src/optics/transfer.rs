@@ -1,7 +1,7 @@
 //! A transfer function as a table: colour and extinction by data value.
 
 use crate::components::{ControlPoint, IsoValue, TransferFunction};
-use glam::{DVec3, Vec4};
+use glam::{DVec3, Vec3, Vec4};
 
 /// The greatest opacity that an extinction is derived from: one step of 32-bit floats below 1.
 const MAX_OPACITY: f64 = 1.0 - 1.0 / (1u64 << 24) as f64;
@@ -11,6 +11,21 @@ const MAX_OPACITY: f64 = 1.0 - 1.0 / (1u64 << 24) as f64;
 pub struct LookupTable {
     /// Colour and extinction per scene unit of each entry; the first is at the lower end of the domain, the last at the upper.
     pub entries: Vec<Vec4>,
+    /// Iso values of no width within the domain, by position.
+    pub layers: Vec<Layer>,
+}
+
+/// A surface without thickness. In a table it fills the cell between two entries that it lies in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layer {
+    /// Place in the table, in entries.
+    pub position: f64,
+    /// The entry below that place, never the last: the layer lies between it and the next.
+    pub cell: usize,
+    /// Emitted radiance at full opacity.
+    pub colour: Vec3,
+    /// Optical depth of a crossing.
+    pub depth: f32,
 }
 
 impl LookupTable {
@@ -32,7 +47,10 @@ impl LookupTable {
             let (colour, depth) = classify(&points, &function.iso, position, value);
             colour.as_vec3().extend((depth * per_unit).min(f64::from(f32::MAX)) as f32)
         });
-        Self { entries: entries.collect() }
+        let entries = entries.collect();
+        let mut layers: Vec<Layer> = function.iso.iter().filter_map(|iso| layer(iso, domain, last)).collect();
+        layers.sort_by(|a, b| a.position.total_cmp(&b.position));
+        Self { entries, layers }
     }
 
     /// Place of a data value in the table, in entries, not clamped.
@@ -47,17 +65,96 @@ impl LookupTable {
         for entry in &self.entries {
             before.push(before[before.len() - 1] + u32::from(entry.w > 0.0));
         }
-        Held { before }
+        let layers = self.layers.iter().filter(|layer| layer.depth > 0.0);
+        Held { before, layers: layers.map(|layer| layer.cell as f64).collect() }
+    }
+
+    /// What has been passed up to each entry.
+    pub fn cumulative(&self) -> Cumulative {
+        let mut entries = Vec::with_capacity(self.entries.len());
+        let (mut depth, mut layers) = (0.0, 0.0);
+        for (index, entry) in self.entries.iter().enumerate() {
+            let high = depth as f32;
+            entries.push([high, (depth - f64::from(high)) as f32, layers as f32, entry.w]);
+            let next = self.entries.get(index + 1).unwrap_or(entry).w;
+            depth += 0.5 * (f64::from(entry.w) + f64::from(next));
+            let here = self.layers.iter().filter(|layer| layer.cell == index);
+            layers += here.map(|layer| f64::from(layer.depth)).sum::<f64>();
+        }
+        Cumulative { entries }
     }
 }
 
-/// How many entries in front of each absorb something.
+/// The integral of a table's extinction from its lower end, from which the optical depth of any segment follows along which the value
+/// changes evenly: `length (K(b) - K(a)) / (b - a) + |L(b) - L(a)|`, for values at the places a and b of the table, in entries.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cumulative {
+    /// For each entry: K, extinction per scene unit integrated over places, and what rounding K to 32 bits left over; L, the depth of
+    /// layers passed; the extinction. Texels of a texture as they are. Between entries L is linear, and K grows by
+    /// `t (sigma + t/2 (next sigma - sigma))`. Differences of K and of its rest are taken each for itself: the sum of both is exact to 48
+    /// bits of the greatest K.
+    pub entries: Vec<[f32; 4]>,
+}
+
+impl Cumulative {
+    /// Optical depth of a segment of `length` scene units whose value goes evenly from place `front` to place `back`, in entries. Places
+    /// outside the table count as its ends.
+    pub fn depth(&self, front: f64, back: f64, length: f64) -> f64 {
+        let (front, back) = (self.at(front), self.at(back));
+        let across = back.place - front.place;
+        let mean = if across.abs() > 1e-6 {
+            (back.depth - front.depth) / across
+        } else {
+            0.5 * (front.extinction + back.extinction)
+        };
+        length * mean.max(0.0) + (back.layers - front.layers).abs()
+    }
+
+    fn at(&self, place: f64) -> Passed {
+        let last = self.entries.len().saturating_sub(1);
+        let place = place.clamp(0.0, last as f64);
+        let below = (place as usize).min(last.saturating_sub(1));
+        let part = place - below as f64;
+        let [low, high] = [below, (below + 1).min(last)].map(|entry| self.entries[entry].map(f64::from));
+        let rise = high[3] - low[3];
+        Passed {
+            place,
+            depth: low[0] + low[1] + part * (low[3] + 0.5 * part * rise),
+            layers: low[2] + part * (high[2] - low[2]),
+            extinction: low[3] + part * rise,
+        }
+    }
+}
+
+/// [`Cumulative`] at one place.
+struct Passed {
+    place: f64,
+    depth: f64,
+    layers: f64,
+    extinction: f64,
+}
+
+/// The layer of an iso value without width, if it has none and lies within the domain.
+fn layer(iso: &IsoValue, domain: (f32, f32), last: f64) -> Option<Layer> {
+    let (low, high) = (f64::from(domain.0), f64::from(domain.1));
+    let position = (f64::from(iso.value) - low) / (high - low) * last;
+    let within = iso.width == 0.0 && (0.0..=last).contains(&position);
+    within.then(|| Layer {
+        position,
+        cell: position.min(last - 1.0) as usize,
+        colour: iso.color,
+        depth: iso.absorption,
+    })
+}
+
+/// How many entries in front of each absorb something, and the cells in which there is a layer.
 pub struct Held {
     before: Vec<u32>,
+    layers: Vec<f64>,
 }
 
 impl Held {
-    /// Whether any value between two places of the table absorbs anything, those places and the entries around them included.
+    /// Whether anything between two places of the table absorbs, those places and the entries around them included.
     pub fn between(&self, low: f64, high: f64) -> bool {
         if low.is_nan() || high < low {
             return false;
@@ -65,7 +162,9 @@ impl Held {
         let last = self.before.len() - 2;
         let first = (low.floor().max(0.0) as usize).min(last);
         let end = (high.ceil().max(0.0) as usize).min(last);
+        // A layer is met by those who cross it, or part of its cell.
         self.before[end + 1] > self.before[first]
+            || self.layers.iter().any(|cell| low < cell + 1.0 && high > *cell && low < high)
     }
 }
 
@@ -74,7 +173,7 @@ fn classify(points: &[ControlPoint], iso: &[IsoValue], position: f64, value: f64
     let (mut colour, opacity) = interpolate(points, position);
     let mut depth = -(-opacity.clamp(0.0, MAX_OPACITY)).ln_1p();
     // Extinctions add; the colour is that of the mixture.
-    let layers = iso.iter().map(|layer| {
+    let layers = iso.iter().filter(|layer| layer.width > 0.0).map(|layer| {
         (
             layer.color.as_dvec3(),
             tent(value - f64::from(layer.value), f64::from(layer.width)) * f64::from(layer.absorption),
@@ -157,5 +256,40 @@ mod tests {
         assert!(held.between(0.0, 1.5));
         assert!(held.between(2.0, 2.0));
         assert!(!held.between(f64::INFINITY, f64::NEG_INFINITY));
+    }
+    #[test]
+    fn the_integral_of_any_stretch_is_that_of_its_parts() {
+        let mut function = ramp();
+        function.iso = vec![IsoValue { value: 40.0, width: 0.0, absorption: 2.0, ..Default::default() }];
+        let table = LookupTable::new(&function, (0.0, 100.0), 1.0, 10.0);
+        assert_eq!((table.layers.len(), table.layers[0].cell), (1, 1));
+        let passed = table.cumulative();
+        // The layer fills the cell from 1 to 2; a length of 1 for each entry.
+        let depth = |front: f64, back: f64| passed.depth(front, back, (back - front).abs());
+        let whole = depth(0.0, 4.0);
+        assert!(
+            (whole
+                - (2.0 + table.entries.iter().map(|entry| f64::from(entry.w)).sum::<f64>()
+                    - f64::from(table.entries[4].w) / 2.0))
+                .abs()
+                < 1e-6
+        );
+        for middle in [0.3, 1.25, 2.0, 3.9] {
+            assert!((depth(0.0, middle) + depth(middle, 4.0) - whole).abs() < 1e-9);
+            assert!((depth(4.0, middle) + depth(middle, 0.0) - whole).abs() < 1e-9);
+        }
+        let flat = passed.depth(2.5, 2.5, 3.0);
+        assert!((flat - 1.5 * f64::from(table.entries[2].w + table.entries[3].w)).abs() < 1e-6);
+        assert!((passed.depth(-7.0, 1.0, 1.0) - passed.depth(0.0, 1.0, 1.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_layer_is_met_by_what_crosses_it() {
+        let mut function = ramp();
+        function.points.clear();
+        function.iso = vec![IsoValue { value: 40.0, width: 0.0, ..Default::default() }];
+        let held = LookupTable::new(&function, (0.0, 100.0), 1.0, 1.0).holds_something();
+        assert!(held.between(0.0, 4.0) && held.between(1.9, 3.0) && held.between(0.5, 1.1));
+        assert!(!held.between(0.0, 1.0) && !held.between(2.0, 4.0) && !held.between(1.5, 1.5));
     }
 }

@@ -4,9 +4,10 @@
 //! voxels how far the nearest one is that holds anything. Reruns for a volume when its transfer function, data, or the unit of the scene
 //! changes.
 
-use crate::components::{SceneSettings, TransferFunction, Volume};
+use crate::components::{Classification, SceneSettings, TransferFunction, Volume};
+use crate::gpu::VolumeFormat;
 use crate::loading::LoadedVolume;
-use crate::optics::transfer::LookupTable;
+use crate::optics::transfer::{Cumulative, LookupTable};
 use crate::report::Report;
 use bevy_ecs::prelude::*;
 
@@ -21,6 +22,19 @@ pub(crate) struct Classified {
     pub bricks: [u32; 3],
     /// Distance of each brick from the nearest that holds something, in bricks, at most 255; 0 is such a brick.
     pub distances: Vec<u8>,
+    /// When the function is applied.
+    pub classification: Classification,
+    /// The table's extinction and layers added up from its lower end: the optical depth of segments of any length.
+    #[expect(dead_code, reason = "for the light that volumes get, which goes in steps of its own")]
+    pub cumulative: Cumulative,
+}
+
+impl Classified {
+    /// Place in the table, from 0 to 1, of a texel = texel * scale + offset.
+    pub fn lookup(&self, format: VolumeFormat) -> (f32, f32) {
+        let (low, high) = self.domain;
+        (format.scale / (high - low), (format.offset - low) / (high - low))
+    }
 }
 
 type Changes = Or<(Changed<TransferFunction>, Changed<LoadedVolume>)>;
@@ -49,7 +63,14 @@ pub(crate) fn classify(
         let distances = distances(bricks.size, &occupied);
         report
             .ran("classify", &[("entries", table.entries.len() as u64), ("bricks", distances.len() as u64)]);
-        commands.entity(entity).insert(Classified { table, domain, bricks: bricks.size, distances });
+        commands.entity(entity).insert(Classified {
+            cumulative: table.cumulative(),
+            table,
+            domain,
+            bricks: bricks.size,
+            distances,
+            classification: function.classification,
+        });
     }
 }
 

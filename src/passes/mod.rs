@@ -1,6 +1,7 @@
 //! Stale products become textures, and textures a picture. One file a pass, in the order in which they run.
 
 pub(crate) mod body;
+pub(crate) mod classification;
 pub mod classify;
 pub mod combine;
 pub mod dimmed_gbuffer;
@@ -9,6 +10,8 @@ pub mod light_cells;
 pub mod light_gbuffer;
 pub mod light_volume;
 pub mod medium;
+pub mod preclassify;
+pub mod preintegrate;
 pub mod raycast;
 pub mod scattered_light;
 pub mod scattered_radiosity;

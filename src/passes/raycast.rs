@@ -4,12 +4,17 @@
 //! pixel: radiance, and how many samples it took. Runs each frame in which a volume is there. The shader is made for the number of volumes,
 //! since each needs a texture binding of its own: their number is limited by what the adapter can bind at once.
 
+use super::classification;
 use super::classify::{Classified, classify};
 use super::light_volume::{LightVolume, LightVolumes, lighting_in_force, lookup, scene_from_texture};
+use super::preclassify::{ClassifiedVoxels, Preclassifier, preclassify};
+use super::preintegrate::{PreintegratedPairs, preintegrate};
 use super::summed_light::SummedLight;
 use super::surface::Surface;
 use super::upload::{SENTINEL_THRESHOLD, VolumeTexture, VolumeUploadPlugin};
-use crate::components::{Placement, RayCast as RayCastSettings, SceneSettings, Shading, VolumeLighting};
+use crate::components::{
+    Classification, Placement, RayCast as RayCastSettings, SceneSettings, Shading, VolumeLighting,
+};
 use crate::gpu::{
     Draw, DrawDescriptor, Filtering, Gpu, GpuError, PassTimer, Target, binding, texture_of, uniform_array,
 };
@@ -21,6 +26,7 @@ use crate::view::{FrameBuffers, Picture, View, far_background, lights_module};
 use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
+use bevy_ecs::query::QueryData;
 use glam::{DMat3, DVec3, Mat3, Mat4, UVec2, UVec3, Vec3, Vec4};
 use std::fmt::Write;
 
@@ -29,8 +35,9 @@ pub(crate) struct RayCastPlugin;
 
 impl Plugin for RayCastPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<RayCaster>().add_plugins(VolumeUploadPlugin);
-        app.add_systems(Update, classify.in_set(Stage::Classify))
+        app.init_resource::<RayCaster>().init_resource::<Preclassifier>().add_plugins(VolumeUploadPlugin);
+        let classifying = (preintegrate, preclassify).run_if(resource_exists::<Gpu>);
+        app.add_systems(Update, (classify, classifying).chain().in_set(Stage::Classify))
             .add_systems(Update, run.in_set(Stage::RayCast).run_if(resource_exists::<Gpu>));
     }
 }
@@ -57,6 +64,8 @@ impl RayCaster {
 struct Variant {
     /// One for each volume.
     filtering: Vec<Filtering>,
+    /// One for each volume.
+    classifications: Vec<Classification>,
     light_capacity: usize,
     /// Whether any volume is lit by its gradient, which costs more than the rest together.
     any_lit: bool,
@@ -107,6 +116,9 @@ mirror! {
         first_sweep: u32,
         fluence_scale: f32,
         axes: Mat3,
+        classification: u32,
+        greatest_colour: f32,
+        greatest_extinction: f32,
     }
 }
 
@@ -118,34 +130,24 @@ const OTHER_TEXTURES: u32 = 3;
 /// Bindings of the shader in front of the volume textures.
 pub(crate) const FIXED_BINDINGS: usize = 7;
 
-type VolumeData<'a> = (
-    Entity,
-    &'a LoadedVolume,
-    Ref<'a, Classified>,
-    &'a VolumeTexture,
-    &'a Placement,
-    &'a VolumeLighting,
-    &'a RayCastSettings,
-    Option<&'a Shading>,
-    Option<&'a LightVolumes>,
-    Option<&'a SummedLight>,
-);
-type Volumes<'w, 's> = Query<
-    'w,
-    's,
-    (
-        Entity,
-        &'static LoadedVolume,
-        Ref<'static, Classified>,
-        &'static VolumeTexture,
-        &'static Placement,
-        &'static VolumeLighting,
-        &'static RayCastSettings,
-        Option<&'static Shading>,
-        Option<&'static LightVolumes>,
-        Option<&'static SummedLight>,
-    ),
->;
+/// A volume with all that its picture depends on.
+#[derive(QueryData)]
+pub(crate) struct VolumeQuery {
+    entity: Entity,
+    loaded: &'static LoadedVolume,
+    classified: Ref<'static, Classified>,
+    texture: &'static VolumeTexture,
+    placement: &'static Placement,
+    lighting: &'static VolumeLighting,
+    ray_cast: &'static RayCastSettings,
+    shading: Option<&'static Shading>,
+    pairs: Option<&'static PreintegratedPairs>,
+    voxels: Option<&'static ClassifiedVoxels>,
+    light_volumes: Option<&'static LightVolumes>,
+    summed: Option<&'static SummedLight>,
+}
+
+type VolumeData<'a> = VolumeQueryItem<'a, 'a>;
 
 fn run(
     (gpu, frame, view, picture, settings): (
@@ -155,28 +157,18 @@ fn run(
         Res<Picture>,
         Res<SceneSettings>,
     ),
-    volumes: Volumes,
+    volumes: Query<VolumeQuery>,
     surface: Res<Surface>,
     mut caster: ResMut<RayCaster>,
     mut timer: Option<ResMut<PassTimer>>,
     (mut report, mut failure, mut problems): (ResMut<Report>, ResMut<Failure>, ResMut<Problems>),
 ) {
     let mut volumes: Vec<_> = volumes.iter().collect();
-    volumes.sort_by_key(|volume| volume.0);
+    volumes.sort_by_key(|volume| volume.entity);
     let limit = gpu.device.limits().max_sampled_textures_per_shader_stage - OTHER_TEXTURES;
     let light_volumes = light_volumes(&volumes).len();
-    let scattered = 2 * volumes.iter().filter(|volume| volume.9.is_some()).count();
-    if volumes.len() + light_volumes + scattered > limit as usize {
-        let mut message = format!("{} volumes are in the scene", volumes.len());
-        if light_volumes > 0 {
-            message += &format!(", with {} textures of light between them", light_volumes + scattered);
-        }
-        message += &format!("; this adapter can show {limit} at once");
-        problems.0.push(
-            Problem::error(message)
-                .help("merge volumes, or leave some out; a volume that scatters has one for each light, and a light volume two more")
-                .on(volumes[volumes.len() - 1].0, "Volume"),
-        );
+    if let Some(problem) = too_many(&volumes, light_volumes, limit) {
+        problems.0.push(problem);
         return;
     }
     if volumes.is_empty() {
@@ -192,6 +184,36 @@ fn run(
     failure.keep(drawn);
 }
 
+/// What is told where volumes and their light volumes are more textures than can be bound.
+fn too_many(volumes: &[VolumeData], light_volumes: usize, limit: u32) -> Option<Problem> {
+    let classified =
+        volumes.iter().filter(|volume| classification_of(volume) != Classification::Post).count();
+    let scattered = 2 * volumes.iter().filter(|volume| volume.summed.is_some()).count();
+    let light = light_volumes + scattered;
+    if volumes.len() + light + classified <= limit as usize {
+        return None;
+    }
+    let mut message = format!("{} volumes are in the scene", volumes.len());
+    if light > 0 {
+        message += &format!(", with {light} textures of light between them");
+    }
+    if classified > 0 {
+        message += &format!(", {classified} of them twice for their classification");
+    }
+    message += &format!("; this adapter can show {limit} at once");
+    let help = "merge volumes, leave some out, or classify them by `Post`; a volume that scatters has a texture for each light, and a light volume two more";
+    Some(Problem::error(message).help(help).on(volumes[volumes.len() - 1].entity, "Volume"))
+}
+
+/// How a volume is classified: as it asks, once what that takes is there.
+fn classification_of(volume: &VolumeData) -> Classification {
+    match (volume.classified.classification, volume.pairs, volume.voxels) {
+        (Classification::PreIntegrated, Some(_), _) => Classification::PreIntegrated,
+        (Classification::Pre, _, Some(_)) => Classification::Pre,
+        _ => Classification::Post,
+    }
+}
+
 /// Makes what is missing or stale: pipeline, tables, target.
 fn prepare(
     gpu: &Gpu,
@@ -201,17 +223,18 @@ fn prepare(
     caster: &mut RayCaster,
     report: &mut Report,
 ) -> Result<(), GpuError> {
-    let filtering = volumes.iter().map(|volume| volume.3.format.filtering).collect();
-    let any_lit = volumes.iter().any(|volume| !matches!(volume.5, VolumeLighting::EmissionAbsorption));
+    let filtering = volumes.iter().map(|volume| volume.texture.format.filtering).collect();
+    let any_lit = volumes.iter().any(|volume| !matches!(volume.lighting, VolumeLighting::EmissionAbsorption));
     let light_volumes = light_volumes(volumes).len();
-    let scattered = volumes.iter().map(|volume| volume.9.is_some()).collect();
-    let variant = Variant { filtering, light_capacity, any_lit, light_volumes, scattered };
+    let scattered = volumes.iter().map(|volume| volume.summed.is_some()).collect();
+    let classifications = volumes.iter().map(classification_of).collect();
+    let variant = Variant { filtering, classifications, light_capacity, any_lit, light_volumes, scattered };
     if caster.draw.as_ref().is_none_or(|(made_for, _)| *made_for != variant) {
         caster.draw = Some((variant.clone(), make(gpu, &variant)?));
         report.pipelines.push("raycast");
     }
     if caster.tables.as_ref().is_none_or(|tables| tables.starts.len() != volumes.len())
-        || volumes.iter().any(|volume| volume.2.is_changed())
+        || volumes.iter().any(|volume| volume.classified.is_changed())
     {
         let tables = tables(gpu, volumes);
         report.gpu_bytes.insert("lookup tables", tables.bytes.0);
@@ -253,16 +276,19 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
     let light_volumes = lookup::bindings(variant.light_volumes, lookup::filtering(gpu));
     let scattered = variant.scattered.iter().filter(|scattered| **scattered);
     let scattered = scattered.flat_map(|_| [binding::texture(wgpu::TextureViewDimension::D3, true); 2]);
-    let bindings: Vec<_> =
-        fixed.into_iter().chain(textures).chain(light_volumes.clone()).chain(scattered).collect();
     let first = FIXED_BINDINGS + variant.filtering.len();
-    let first_scattered = first + light_volumes.len();
+    let first_classified = first + light_volumes.len();
+    let classified = classification::bindings(&variant.classifications);
+    let first_scattered = first_classified + classified.len();
+    let bindings: Vec<_> =
+        fixed.into_iter().chain(textures).chain(light_volumes).chain(classified).chain(scattered).collect();
     Draw::new(
         gpu,
         &DrawDescriptor {
             name: "raycast",
             generated: &[
                 ("volumes", volumes_module(&variant.filtering, variant.any_lit, FIXED_BINDINGS)),
+                classifications_module(&variant.classifications, first_classified),
                 lights_module(variant.light_capacity),
                 lookup::light_volumes_module(variant.light_volumes, lookup::filtering(gpu), first),
                 scattered_module(&variant.scattered, first_scattered),
@@ -274,6 +300,14 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
             depth: false,
         },
     )
+}
+
+/// The WGSL module `classifications`, whose textures are bound behind all others.
+pub(crate) fn classifications_module(
+    classifications: &[Classification],
+    first_binding: usize,
+) -> (&'static str, String) {
+    ("classifications", classification::module(classifications, first_binding))
 }
 
 /// The WGSL module `volumes`: one texture binding a volume, and `texel_at(volume, place)` that interpolates in it.
@@ -353,9 +387,9 @@ fn eight_loads(index: usize) -> String {
 }
 
 fn tables(gpu: &Gpu, volumes: &[VolumeData]) -> Tables {
-    let width = volumes.iter().map(|volume| volume.2.table.entries.len()).max().unwrap_or(1);
+    let width = volumes.iter().map(|volume| volume.classified.table.entries.len()).max().unwrap_or(1);
     let (mut entries, mut distances, mut starts) = (Vec::new(), Vec::new(), Vec::new());
-    for (_, _, classified, ..) in volumes {
+    for VolumeData { classified, .. } in volumes {
         starts.push(distances.len() as u32);
         entries.extend_from_slice(&classified.table.entries);
         entries.resize(entries.len().next_multiple_of(width), Vec4::ZERO);
@@ -390,14 +424,14 @@ fn instances(
     let mut all = Vec::new();
     for (volume, start) in volumes.iter().zip(starts) {
         all.push(instance(view, settings, volume, *start, first_sweep));
-        first_sweep += volume.8.map_or(0, |own| own.0.len() as u32);
+        first_sweep += volume.light_volumes.map_or(0, |own| own.0.len() as u32);
     }
     all
 }
 
 /// The light volumes of all volumes, in order.
 fn light_volumes<'a>(volumes: &[VolumeData<'a>]) -> Vec<&'a LightVolume> {
-    volumes.iter().filter_map(|volume| volume.8).flat_map(|own| &own.0).collect()
+    volumes.iter().filter_map(|volume| volume.light_volumes).flat_map(|own| &own.0).collect()
 }
 
 fn instance(
@@ -407,14 +441,15 @@ fn instance(
     bricks_start: u32,
     first_sweep: u32,
 ) -> VolumeInstance {
-    let (_, loaded, classified, texture, placement, lighting, ray_cast, shading, light_volumes, summed) =
-        volume;
+    let VolumeData { loaded, classified, texture, placement, lighting, ray_cast, shading, .. } = volume;
+    let VolumeData { light_volumes, voxels, summed, .. } = volume;
     let eye_from_texture = view.eye_from_scene * scene_from_texture(loaded, placement, settings);
     let size = DVec3::from(loaded.data.size.map(f64::from));
     let axes = eye_from_texture.matrix3;
     let voxel =
         (axes.x_axis.length() / size.x).min(axes.y_axis.length() / size.y).min(axes.z_axis.length() / size.z);
-    let (low, high) = classified.domain;
+    let (lookup_scale, lookup_offset) = classified.lookup(texture.format);
+    let [greatest_colour, greatest_extinction] = voxels.map_or([1.0; 2], |voxels| voxels.greatest);
     let mut lit = Lit::of(&lighting_in_force(lighting, *shading, settings));
     if [SCATTERS_ONCE, SCATTERS].contains(&lit.kind) && light_volumes.is_none_or(|own| own.0.is_empty()) {
         // Nothing arrives where there is no light.
@@ -424,8 +459,8 @@ fn instance(
         texture_from_eye: glam::DMat4::from(eye_from_texture.inverse()).as_mat4(),
         size: size.as_vec3(),
         step: (voxel * f64::from(ray_cast.step)) as f32,
-        lookup_scale: texture.format.scale / (high - low),
-        lookup_offset: (texture.format.offset - low) / (high - low),
+        lookup_scale,
+        lookup_offset,
         table_entries: classified.table.entries.len() as u32,
         bricks_start,
         bricks: UVec3::from(classified.bricks),
@@ -445,6 +480,9 @@ fn instance(
         axes: DMat3::from_cols(axes.x_axis.normalize(), axes.y_axis.normalize(), axes.z_axis.normalize())
             .transpose()
             .as_mat3(),
+        classification: classification::number(classification_of(volume)),
+        greatest_colour,
+        greatest_extinction,
     }
 }
 
@@ -530,11 +568,17 @@ fn draw(
         wgpu::BindingResource::TextureView(behind),
         wgpu::BindingResource::Sampler(sampler),
     ];
-    resources.extend(volumes.iter().map(|volume| wgpu::BindingResource::TextureView(&volume.3.view)));
+    resources.extend(volumes.iter().map(|volume| wgpu::BindingResource::TextureView(&volume.texture.view)));
     let light_volumes = light_volumes(volumes);
     let (sweeps, repeating) = (lookup::sweeps(gpu, &light_volumes), lookup::sampler(gpu));
     resources.extend(lookup::resources(&light_volumes, &sweeps, &repeating));
-    for summed in volumes.iter().filter_map(|volume| volume.9) {
+    let classified = volumes.iter().filter_map(|volume| match classification_of(volume) {
+        Classification::Post => None,
+        Classification::Pre => volume.voxels.map(|voxels| &voxels.view),
+        Classification::PreIntegrated => volume.pairs.map(|pairs| &pairs.view),
+    });
+    resources.extend(classified.map(wgpu::BindingResource::TextureView));
+    for summed in volumes.iter().filter_map(|volume| volume.summed) {
         resources.extend(
             [&summed.fluence, &summed.flux].map(|grid| wgpu::BindingResource::TextureView(&grid.view)),
         );
