@@ -5,6 +5,18 @@
 
 #import classified
 
+// Colour and sigma_t per scene unit.
+fn classified_at(place: vec3f) -> vec4f {
+    if holds_nothing(place) {
+        return vec4f(0.0);
+    }
+    let at = entry_at(place);
+    let below = clamp(floor(at), 0.0, classified.last - 1.0);
+    let entry = vec2u(u32(below), 0u);
+    let found = mix(textureLoad(table, entry, 0), textureLoad(table, entry + vec2u(1u, 0u), 0), at - below);
+    return select(found, vec4f(0.0), at < 0.0);
+}
+
 struct Cells {
     // Cells along each axis.
     count: vec3u,

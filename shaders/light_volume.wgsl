@@ -2,7 +2,8 @@
 //
 // A texel holds the mean of sigma_t along the light from where it enters the volume, times the length of a slice; times the slices
 // passed it is tau, and exp(-tau) of the light is left. The mean varies slowly even where tau does not, and where the medium is the same
-// everywhere it is exact at whatever resolution. tau is the sum over segments of at most a voxel, sampled in their middles: second order.
+// everywhere it is exact at whatever resolution. tau is the sum over segments of at most a voxel along which the value changes evenly,
+// by the integral of the transfer function: exact for whatever function, of second order for a field that is not linear.
 //
 // Meshes in the way add an optical depth behind which nothing is left.
 //
@@ -80,15 +81,67 @@ fn place_of(across: vec2f, slice: f32) -> vec3f {
     return (columns.texture_from_cells * vec4f(across, slice, 1.0)).xyz;
 }
 
-// Optical depth of the stretch of a column that ends at `across` in a slice.
+// The transfer function up to a place in the table: `Cumulative` in `src/optics/transfer.rs`.
+struct Passed {
+    // Less than 0 where a sample is missing.
+    entry: f32,
+    depth: vec2f,
+    layers: f32,
+    sigma_t: f32,
+}
+
+fn passed_at(place: vec3f) -> Passed {
+    let at = entry_at(place);
+    let below = clamp(floor(at), 0.0, classified.last - 1.0);
+    let entry = vec2u(u32(below), 0u);
+    let low = textureLoad(table, entry, 0);
+    let high = textureLoad(table, entry + vec2u(1u, 0u), 0);
+    let part = max(at - below, 0.0);
+    let rise = high.w - low.w;
+    let more = part * (low.w + 0.5 * part * rise);
+    return Passed(at, vec2f(low.x, low.y + more), mix(low.z, high.z, part), low.w + part * rise);
+}
+
+// Optical depth of a segment between two places.
+fn depth_between(front: Passed, back: Passed) -> f32 {
+    if front.entry < 0.0 || back.entry < 0.0 {
+        return 0.0;
+    }
+    let across = back.entry - front.entry;
+    let integral = (back.depth.x - front.depth.x) + (back.depth.y - front.depth.y);
+    // Next to each other the integral has no digits left, and the function no room to bend.
+    let even = 0.5 * (front.sigma_t + back.sigma_t);
+    let mean = select(integral / select(across, 1.0, across == 0.0), even, abs(across) < 0.01);
+    return segments.length * max(mean, 0.0) + abs(back.layers - front.layers);
+}
+
+// Optical depth of the stretch of a column that ends at `across` in a slice. Where bricks hold nothing nothing is looked up.
 fn depth_before(across: vec2f, slice: f32) -> f32 {
     let part = 1.0 / f32(segments.count);
     var sum = 0.0;
+    var from_place = place_of(across - columns.slope, slice - 1.0);
+    var from_nothing = holds_nothing(clamp(from_place, vec3f(0.0), vec3f(1.0)));
+    var is_known = false;
+    var front: Passed;
     for (var i = 0u; i < segments.count; i += 1u) {
-        let back = 1.0 - (f32(i) + 0.5) * part;
-        sum += classified_at(place_of(across - columns.slope * back, slice - back)).a;
+        let back_by = 1.0 - f32(i + 1u) * part;
+        let to_place = place_of(across - columns.slope * back_by, slice - back_by);
+        let to_nothing = holds_nothing(clamp(to_place, vec3f(0.0), vec3f(1.0)));
+        if from_nothing && to_nothing {
+            is_known = false;
+        } else {
+            if !is_known {
+                front = passed_at(from_place);
+            }
+            let end = passed_at(to_place);
+            sum += depth_between(front, end);
+            front = end;
+            is_known = true;
+        }
+        from_place = to_place;
+        from_nothing = to_nothing;
     }
-    return sum * segments.length;
+    return sum;
 }
 
 // How far inside the volume a place is across, in slices; less than 0 outside.
@@ -140,7 +193,7 @@ fn sweep(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
         if slices > 0.0 {
             mean = depth / slices;
         } else {
-            mean = classified_at(place_of(at, f32(slice))).a * segments.length * f32(segments.count);
+            mean = passed_at(place_of(at, f32(slice))).sigma_t * segments.length * f32(segments.count);
         }
         if shadow.is_there != 0u {
             mean += shade(blockers, place_of(at, f32(slice))) / max(slices, SOONEST);

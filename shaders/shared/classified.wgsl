@@ -16,7 +16,7 @@ struct Classified {
 }
 
 @group(0) @binding(0) var<uniform> classified: Classified;
-// Colour and sigma_t per scene unit.
+// What is known of each entry: see `Medium`.
 @group(0) @binding(1) var table: texture_2d<f32>;
 @group(0) @binding(2) var brick_distances: texture_2d<u32>;
 @group(0) @binding(3) var linear_sampler: sampler;
@@ -27,16 +27,9 @@ fn holds_nothing(place: vec3f) -> bool {
     return textureLoad(brick_distances, vec2u(brick % BRICK_ROW, brick / BRICK_ROW), 0).r != 0u;
 }
 
-// Colour and sigma_t per scene unit, constant beyond the faces of the volume.
-fn classified_at(place: vec3f) -> vec4f {
-    let inside = clamp(place, vec3f(0.0), vec3f(1.0));
-    if holds_nothing(inside) {
-        return vec4f(0.0);
-    }
-    let texel = texel_at(0u, inside);
+// Place in the table, in entries, of what is at a place of the volume; constant beyond its faces. Less than 0 where a sample is missing.
+fn entry_at(place: vec3f) -> f32 {
+    let texel = texel_at(0u, clamp(place, vec3f(0.0), vec3f(1.0)));
     let at = clamp(texel * classified.lookup_scale + classified.lookup_offset, 0.0, 1.0) * classified.last;
-    let below = min(floor(at), classified.last - 1.0);
-    let entry = vec2u(u32(below), 0u);
-    let found = mix(textureLoad(table, entry, 0), textureLoad(table, entry + vec2u(1u, 0u), 0), at - below);
-    return select(found, vec4f(0.0), texel > classified.sentinel);
+    return select(at, -1.0, texel > classified.sentinel);
 }

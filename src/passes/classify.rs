@@ -25,7 +25,6 @@ pub(crate) struct Classified {
     /// When the function is applied.
     pub classification: Classification,
     /// The table's extinction and layers added up from its lower end: the optical depth of segments of any length.
-    #[expect(dead_code, reason = "for the light that volumes get, which goes in steps of its own")]
     pub cumulative: Cumulative,
 }
 

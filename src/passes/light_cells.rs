@@ -135,7 +135,8 @@ fn make(
     let voxels = UVec3::from(loaded.data.size).as_vec3() / cells.as_vec3();
     let samples = (voxels / 2.0).ceil().as_uvec3().clamp(UVec3::ONE, UVec3::splat(16));
     let uniform = uniform_buffer(gpu, "cells", &CellsUniform { count: cells, samples });
-    let medium = Medium::new(gpu, loaded, classified, texture);
+    let entries: Vec<[f32; 4]> = classified.table.entries.iter().map(|entry| entry.to_array()).collect();
+    let medium = Medium::new(gpu, loaded, classified, texture, &entries);
     let mut resources = medium.resources();
     resources.extend([
         uniform.as_entire_binding(),

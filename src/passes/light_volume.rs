@@ -217,7 +217,7 @@ fn make(
     let segments = SegmentsUniform { length: (recipe.slice / f64::from(count)) as f32, count };
     let columns = uniform_buffer(gpu, "columns", &recipe.sweep.columns());
     let segments = uniform_buffer(gpu, "segments", &segments);
-    let medium = Medium::new(gpu, loaded, classified, texture);
+    let medium = Medium::new(gpu, loaded, classified, texture, &classified.cumulative.entries);
     let (shadow, shadow_map) =
         shadow::draw(gpu, gbuffer, recipe.shadow.as_ref(), *texture_from_scene, report)?;
     let mut resources = medium.resources();

@@ -34,13 +34,19 @@ impl Medium {
     pub const BINDINGS: [wgpu::BindingType; 4] =
         [binding::UNIFORM, binding::TEXTURE, binding::INTEGERS, binding::SAMPLER];
 
-    /// What a transfer function makes of a volume.
-    pub fn new(gpu: &Gpu, loaded: &LoadedVolume, classified: &Classified, texture: &VolumeTexture) -> Self {
-        let (low, high) = classified.domain;
-        let entries = &classified.table.entries;
+    /// What a transfer function makes of a volume, with four numbers for each of its entries: colour and extinction of
+    /// [`LookupTable`](crate::optics::transfer::LookupTable), or those of [`Cumulative`](crate::optics::transfer::Cumulative).
+    pub fn new(
+        gpu: &Gpu,
+        loaded: &LoadedVolume,
+        classified: &Classified,
+        texture: &VolumeTexture,
+        entries: &[[f32; 4]],
+    ) -> Self {
+        let (lookup_scale, lookup_offset) = classified.lookup(texture.format);
         let uniform = ClassifiedUniform {
-            lookup_scale: texture.format.scale / (high - low),
-            lookup_offset: (texture.format.offset - low) / (high - low),
+            lookup_scale,
+            lookup_offset,
             last: (entries.len() - 1) as f32,
             sentinel: SENTINEL_THRESHOLD,
             size: UVec3::from(loaded.data.size).as_vec3(),
