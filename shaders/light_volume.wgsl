@@ -11,6 +11,7 @@
 // writes r32float: mean sigma_t times the length of a slice
 
 #import classified
+#import shadowed
 
 struct Columns {
     // Takes (across, across, slice), in cells from the corner of the volume, to the texture of the volume.
@@ -34,7 +35,6 @@ struct Segments {
 struct Shadow {
     // From the texture of the volume to the light's view: texels from the lower left, and height towards the light.
     view_from_texture: mat4x4f,
-    is_there: u32,
 }
 
 @group(0) @binding(4) var<uniform> columns: Columns;
@@ -115,90 +115,112 @@ fn depth_between(front: Passed, back: Passed) -> f32 {
     return segments.length * max(mean, 0.0) + abs(back.layers - front.layers);
 }
 
-// Optical depth of the stretch of a column that ends at `across` in a slice. Where bricks hold nothing nothing is looked up.
-fn depth_before(across: vec2f, slice: f32) -> f32 {
-    let part = 1.0 / f32(segments.count);
-    var sum = 0.0;
-    var from_place = place_of(across - columns.slope, slice - 1.0);
-    var from_nothing = holds_nothing(clamp(from_place, vec3f(0.0), vec3f(1.0)));
-    var is_known = false;
-    var front: Passed;
-    for (var i = 0u; i < segments.count; i += 1u) {
-        let back_by = 1.0 - f32(i + 1u) * part;
-        let to_place = place_of(across - columns.slope * back_by, slice - back_by);
-        let to_nothing = holds_nothing(clamp(to_place, vec3f(0.0), vec3f(1.0)));
-        if from_nothing && to_nothing {
-            is_known = false;
-        } else {
-            if !is_known {
-                front = passed_at(from_place);
-            }
-            let end = passed_at(to_place);
-            sum += depth_between(front, end);
-            front = end;
-            is_known = true;
-        }
-        from_place = to_place;
-        from_nothing = to_nothing;
-    }
-    return sum;
+// A column on its way.
+struct March {
+    // Texture of the volume where the column would cross slice 0, and from slice to slice.
+    start: vec3f,
+    step: vec3f,
+    // Optical depth since it came in, and over how many slices.
+    depth: f32,
+    slices: f32,
+    // The slice at which it has come in through a face across the slices, and how much of the way to it was inside.
+    entry: f32,
+    part: f32,
+    blockers: vec4f,
 }
 
-// How far inside the volume a place is across, in slices; less than 0 outside.
-fn inside(across: vec2f) -> f32 {
-    let steep = max(abs(columns.slope), vec2f(1e-12));
-    // From the face at which light enters.
-    let passed = select(columns.cells - across, across, columns.slope > vec2f(0.0)) / steep;
-    let left = select(across, columns.cells - across, columns.slope > vec2f(0.0)) / steep;
-    let into = min(passed.x, passed.y);
-    return select(into, min(into, min(left.x, left.y)), min(left.x, left.y) < 0.0);
+// What `added` more on the way to a slice makes of a column, and its texel.
+fn reach_slice(march: ptr<function, March>, added: f32, slice: f32, texel: vec2u) {
+    let comes_in = slice == (*march).entry;
+    // What it met outside does not count.
+    (*march).depth = select((*march).depth + added, added * (*march).part, comes_in);
+    (*march).slices = select((*march).slices + 1.0, (*march).part, comes_in);
+    var mean = (*march).depth / (*march).slices;
+    if HAS_SHADOW {
+        mean += shade((*march).blockers, (*march).start + (*march).step * slice) / max((*march).slices, SOONEST);
+    }
+    textureStore(light_volume, vec3u(texel, u32(slice)), vec4f(mean, 0.0, 0.0, 0.0));
+}
+
+// Slices between two looks at the bricks.
+const RUN = 16.0;
+
+// Slices from a place on in which there is nothing for certain.
+fn empty_slices(place: vec3f, step: vec3f) -> f32 {
+    let at = vec3u(clamp(place * classified.size / BRICK, vec3f(0.0), vec3f(classified.bricks) - 0.5));
+    let brick = (at.z * classified.bricks.y + at.y) * classified.bricks.x + at.x;
+    let distance = f32(textureLoad(brick_distances, vec2u(brick % BRICK_ROW, brick / BRICK_ROW), 0).r);
+    let pace = abs(step) * classified.size / BRICK;
+    return floor(max(distance - 1.0, 0.0) / max(pace.x, max(pace.y, pace.z)));
+}
+
+// The slices from `first` to `end` of a column.
+fn follow(march: ptr<function, March>, first: f32, end: f32, texel: vec2u) {
+    let start = (*march).start;
+    let step = (*march).step;
+    let part = step / f32(segments.count);
+    var slice = first;
+    while slice < end {
+        let leap = min(slice + empty_slices(start + step * slice, step), end);
+        while slice < leap {
+            slice += 1.0;
+            reach_slice(march, 0.0, slice, texel);
+        }
+        let turn = min(slice + RUN, end);
+        var front = passed_at(start + step * slice);
+        while slice < turn {
+            var added = 0.0;
+            for (var i = 1u; i <= segments.count; i += 1u) {
+                let back = passed_at(start + step * slice + part * f32(i));
+                added += depth_between(front, back);
+                front = back;
+            }
+            slice += 1.0;
+            reach_slice(march, added, slice, texel);
+        }
+    }
 }
 
 @compute @workgroup_size(64)
 fn sweep(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let index = id.x + id.y * groups.x * 64u;
-    let across = vec2i(vec2u(index % columns.size.x, index / columns.size.x));
+    let texel = vec2u(index % columns.size.x, index / columns.size.x);
     if index >= columns.size.x * columns.size.y {
         return;
     }
-    let width = vec2i(columns.size.xy);
-    var column = vec2i(-0x40000000);
-    var depth = 0.0;
-    var slices = 0.0;
-    var was_inside = 0.0;
-    var blockers = vec4f(-1e30);
-    for (var slice = 0u; slice < columns.size.z; slice += 1u) {
-        let first = vec2i(floor(-columns.slope * f32(slice))) - 3;
-        let now = first + (((across - first) % width) + width) % width;
-        let at = vec2f(now) + 0.5 + columns.slope * f32(slice);
-        let is_inside = inside(at);
-        var mean: f32;
-        if all(now == column) {
-            let added = depth_before(at, f32(slice));
-            depth += added;
-            slices += 1.0;
-            if is_inside >= 0.0 && was_inside < 0.0 {
-                // It came in through a face across the slices: what it met outside does not count.
-                slices = min(is_inside, 1.0);
-                depth = added * slices;
-            }
-        } else {
-            column = now;
-            depth = 0.0;
-            slices = 0.0;
-            if shadow.is_there != 0u {
-                blockers = blocked(at, f32(slice));
-            }
+    let width = vec2f(columns.size.xy);
+    let slope = columns.slope;
+    let last = f32(columns.size.z - 1u);
+    let steep = select(slope, vec2f(1e-12), abs(slope) < vec2f(1e-12));
+    var march: March;
+    march.step = (columns.texture_from_cells * vec4f(slope, 1.0, 0.0)).xyz;
+    var slice = 0.0;
+    while slice <= last {
+        // The column that crosses this slice here. Of each slice's columns the first is the third before the volume.
+        let first = floor(-slope * slice) - 3.0;
+        let column = vec2f(texel) - width * floor((vec2f(texel) - first + 0.5) / width);
+        // It does until it is no more one of them.
+        let stays = select((column + 4.0 - width) / -steep, (column + 4.0) / -steep, slope < vec2f(0.0));
+        let end = clamp(ceil(min(stays.x, stays.y)) - 1.0, slice, last);
+        let across = column + 0.5;
+        let enters = select(-across, columns.cells - across, slope < vec2f(0.0)) / steep;
+        let entry = max(enters.x, enters.y);
+        march.start = (columns.texture_from_cells * vec4f(across, 0.0, 1.0)).xyz;
+        march.depth = 0.0;
+        march.slices = 0.0;
+        march.entry = select(-1.0, ceil(entry), entry > slice);
+        march.part = max(ceil(entry) - entry, 1e-6);
+        if HAS_SHADOW {
+            march.blockers = blocked(across + slope * slice, slice);
         }
-        if slices > 0.0 {
-            mean = depth / slices;
-        } else {
-            mean = passed_at(place_of(at, f32(slice))).sigma_t * segments.length * f32(segments.count);
+        // Where nothing is passed yet the mean is what is here.
+        let place = march.start + march.step * slice;
+        var mean = passed_at(place).sigma_t * segments.length * f32(segments.count);
+        if HAS_SHADOW {
+            mean += shade(march.blockers, place) / SOONEST;
         }
-        if shadow.is_there != 0u {
-            mean += shade(blockers, place_of(at, f32(slice))) / max(slices, SOONEST);
-        }
-        was_inside = is_inside;
-        textureStore(light_volume, vec3u(vec2u(across), slice), vec4f(mean, 0.0, 0.0, 0.0));
+        textureStore(light_volume, vec3u(texel, u32(slice)), vec4f(mean, 0.0, 0.0, 0.0));
+        follow(&march, slice, end, texel);
+        slice = end + 1.0;
     }
 }

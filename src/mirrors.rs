@@ -90,6 +90,7 @@ pub fn generated_modules() -> Vec<(&'static str, String)> {
         view::lights_module(4),
         light_volumes,
         veils,
+        passes::light_volume::shadow::module(true),
         passes::raycast::scattered_module(&[true, false], 40),
         passes::scattered_radiosity::sampling_module(&Default::default(), 5),
         passes::scattered_radiosity::listing_module(false),
