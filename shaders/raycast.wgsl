@@ -36,7 +36,8 @@ struct VolumeInstance {
     // The ray ends when less than this is left of what lies behind.
     least_transmittance: f32,
     skip_empty: u32,
-    // 0 emission-absorption, 1 gradient, 2 scattered once, 3 scattered without any light, 4 scattered however often.
+    // 0 emission-absorption, 1 gradient, 2 scattered once, 3 scattered without any light, 4 scattered however often,
+    // 5 the same with light that goes on towards the eye.
     lighting: u32,
     ambient: f32,
     diffuse: f32,
@@ -186,7 +187,7 @@ fn shade(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre
 // Light that is scattered towards the eye: the source function where the albedo is `colour`. See `src/optics/two_stream.rs`.
 fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
     let albedo = min(colour, vec3f(1.0));
-    let is_often = volume.lighting == 4u;
+    let is_often = volume.lighting >= 4u;
     // Where light is scattered often, what a forward peak scatters counts as light that was not.
     let beam = select(vec3f(1.0), two_stream_beam(albedo, volume.g), is_often);
     var arriving = vec3f(0.0);
@@ -204,11 +205,17 @@ fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, cent
         }
     }
     if is_often {
-        var leaning = 1.0;
+        let even = volume.fluence_scale / (4.0 * PI) * fluence_at(index, place);
+        // The second grid is that of the flux, or that of light towards the eye.
+        var second = vec3f(0.0);
         if volume.g != 0.0 {
-            leaning = max(1.0 + 3.0 * volume.g * dot(volume.axes * -ray.direction, flux_at(index, place)), 0.0);
+            second = flux_at(index, place);
         }
-        arriving += leaning * volume.fluence_scale / (4.0 * PI) * fluence_at(index, place);
+        if volume.lighting == 5u {
+            arriving += (1.0 - volume.g) * even + volume.g * volume.fluence_scale * second;
+        } else {
+            arriving += max(1.0 + 3.0 * volume.g * dot(volume.axes * -ray.direction, second), 0.0) * even;
+        }
     }
     return albedo * arriving + volume.emission * colour + volume.specular * min(4.0 * normal.steepness, 1.0) * specular;
 }
@@ -217,7 +224,7 @@ fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, cent
 fn source(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
     switch volume.lighting {
         case 1u: { return shade(index, volume, colour, place, centre, ray); }
-        case 2u, 4u: { return scatter(index, volume, colour, place, centre, ray); }
+        case 2u, 4u, 5u: { return scatter(index, volume, colour, place, centre, ray); }
         case 3u: { return volume.emission * colour; }
         default: { return colour; }
     }

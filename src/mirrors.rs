@@ -69,6 +69,7 @@ pub fn all() -> Vec<Mirror> {
         passes::light_volume::sweep::SweepUniform::mirror(),
         passes::scattered_light::ScatterSweepUniform::mirror(),
         passes::scattered_light::SliceUniform::mirror(),
+        passes::eye_light::EyeSweepUniform::mirror(),
         passes::summed_light::SummationUniform::mirror(),
         passes::raycast::VolumeInstance::mirror(),
         passes::tonemap::DisplayUniform::mirror(),

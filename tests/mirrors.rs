@@ -21,6 +21,7 @@ fn shaders() -> Vec<(&'static str, naga::Module, String)> {
         "light_volume",
         "scattered_light",
         "summed_light",
+        "eye_light",
         "dimmed_gbuffer",
         "raycast",
         "tonemap",

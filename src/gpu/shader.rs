@@ -15,11 +15,13 @@ macro_rules! sources {
 
 sources! {
     "bssrdf" => "shared/bssrdf.wgsl",
+    "cells" => "shared/cells.wgsl",
     "classified" => "shared/classified.wgsl",
     "classify" => "shared/classify.wgsl",
     "combine" => "combine.wgsl",
     "dimmed_gbuffer" => "dimmed_gbuffer.wgsl",
     "estimator" => "shared/estimator.wgsl",
+    "eye_light" => "eye_light.wgsl",
     "frame" => "shared/frame.wgsl",
     "fresnel" => "shared/fresnel.wgsl",
     "fullscreen" => "shared/fullscreen.wgsl",

@@ -5,6 +5,7 @@ pub(crate) mod classification;
 pub mod classify;
 pub mod combine;
 pub mod dimmed_gbuffer;
+pub mod eye_light;
 pub mod gbuffer;
 pub mod light_cells;
 pub mod light_gbuffer;
@@ -43,11 +44,18 @@ impl Plugin for ScatteringPlugin {
             .init_resource::<dimmed_gbuffer::Dimmer>()
             .init_resource::<light_cells::CellAverager>()
             .init_resource::<scattered_light::Scatterer>()
-            .init_resource::<summed_light::Adder>();
+            .init_resource::<summed_light::Adder>()
+            .init_resource::<eye_light::EyeSweeper>();
         app.add_systems(
             Update,
             (
-                (light_volume::run, light_cells::run, scattered_light::run, summed_light::run)
+                (
+                    light_volume::run,
+                    light_cells::run,
+                    scattered_light::run,
+                    summed_light::run,
+                    eye_light::run,
+                )
                     .chain()
                     .in_set(Stage::LightVolume),
                 (body::measure, body::forget, surface_points::refine, light_gbuffer::run)

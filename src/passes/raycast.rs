@@ -6,6 +6,7 @@
 
 use super::classification;
 use super::classify::{Classified, classify};
+use super::eye_light::EyeLight;
 use super::light_volume::{LightVolume, LightVolumes, lighting_in_force, lookup, scene_from_texture};
 use super::preclassify::{ClassifiedVoxels, Preclassifier, preclassify};
 use super::preintegrate::{PreintegratedPairs, preintegrate};
@@ -145,6 +146,7 @@ pub(crate) struct VolumeQuery {
     voxels: Option<&'static ClassifiedVoxels>,
     light_volumes: Option<&'static LightVolumes>,
     summed: Option<&'static SummedLight>,
+    eye_light: Option<&'static EyeLight>,
 }
 
 type VolumeData<'a> = VolumeQueryItem<'a, 'a>;
@@ -442,7 +444,7 @@ fn instance(
     first_sweep: u32,
 ) -> VolumeInstance {
     let VolumeData { loaded, classified, texture, placement, lighting, ray_cast, shading, .. } = volume;
-    let VolumeData { light_volumes, voxels, summed, .. } = volume;
+    let VolumeData { light_volumes, voxels, summed, eye_light, .. } = volume;
     let eye_from_texture = view.eye_from_scene * scene_from_texture(loaded, placement, settings);
     let size = DVec3::from(loaded.data.size.map(f64::from));
     let axes = eye_from_texture.matrix3;
@@ -454,6 +456,9 @@ fn instance(
     if [SCATTERS_ONCE, SCATTERS].contains(&lit.kind) && light_volumes.is_none_or(|own| own.0.is_empty()) {
         // Nothing arrives where there is no light.
         lit.kind = UNLIT;
+    }
+    if lit.kind == SCATTERS && eye_light.is_some() {
+        lit.kind = SCATTERS_TOWARDS_EYE;
     }
     VolumeInstance {
         texture_from_eye: glam::DMat4::from(eye_from_texture.inverse()).as_mat4(),
@@ -492,6 +497,7 @@ const GRADIENT: u32 = 1;
 const SCATTERS_ONCE: u32 = 2;
 const UNLIT: u32 = 3;
 const SCATTERS: u32 = 4;
+const SCATTERS_TOWARDS_EYE: u32 = 5;
 
 /// A lighting as the shader knows it.
 #[derive(Default)]
@@ -578,10 +584,10 @@ fn draw(
         Classification::PreIntegrated => volume.pairs.map(|pairs| &pairs.view),
     });
     resources.extend(classified.map(wgpu::BindingResource::TextureView));
-    for summed in volumes.iter().filter_map(|volume| volume.summed) {
-        resources.extend(
-            [&summed.fluence, &summed.flux].map(|grid| wgpu::BindingResource::TextureView(&grid.view)),
-        );
+    for (summed, eye_light) in volumes.iter().filter_map(|volume| Some((volume.summed?, volume.eye_light))) {
+        let second = eye_light.map_or(&summed.flux, |eye_light| &eye_light.grid);
+        resources
+            .extend([&summed.fluence, second].map(|grid| wgpu::BindingResource::TextureView(&grid.view)));
     }
     draw.cover(gpu, &resources, &target.view, timing);
 }

@@ -44,7 +44,7 @@ struct Recipe {
 
 /// One axis of a light's sweeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct AxisSweep {
+pub(crate) struct AxisSweep {
     cells: UVec3,
     axis: usize,
     forwards: bool,
@@ -100,7 +100,7 @@ const HALF_FLUX: f64 = 0.02;
 
 impl AxisSweep {
     /// The sweeps for light that travels in a direction, given in the texture's space.
-    fn all(
+    pub fn all(
         lighting: &VolumeLighting,
         cells: UVec3,
         direction: DVec3,
@@ -141,7 +141,25 @@ impl AxisSweep {
         UVec3::new(self.cells[b], self.cells[c], self.cells[self.axis])
     }
 
-    fn uniform(&self) -> ScatterSweepUniform {
+    /// Columns of cells along the axis.
+    pub fn columns(&self) -> u32 {
+        let extent = self.extent();
+        extent.x * extent.y
+    }
+
+    /// Slices across it.
+    pub fn slices(&self) -> u32 {
+        self.extent().z
+    }
+
+    /// Cells across that a direction, given in the texture's space, moves from slice to slice.
+    pub fn slope(&self, direction: DVec3) -> glam::DVec2 {
+        let in_cells = direction * self.cells.as_dvec3();
+        let [b, c] = [(self.axis + 1) % 3, (self.axis + 2) % 3];
+        glam::DVec2::new(in_cells[b], in_cells[c]) / in_cells[self.axis].abs()
+    }
+
+    pub fn uniform(&self) -> ScatterSweepUniform {
         let [b, c] = [(self.axis + 1) % 3, (self.axis + 2) % 3];
         ScatterSweepUniform {
             cells: self.cells,
@@ -227,6 +245,12 @@ pub(crate) fn run(
     report.hold("scattered_light", held);
 }
 
+/// One of the structs of a buffer of slices.
+pub(crate) fn slice_binding(slices: &wgpu::Buffer) -> wgpu::BindingResource<'_> {
+    let size = std::num::NonZeroU64::new(SliceUniform::SHADER_SIZE.get());
+    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: slices, offset: 0, size })
+}
+
 fn scatter(
     gpu: &Gpu,
     scatterer: &mut Scatterer,
@@ -239,17 +263,12 @@ fn scatter(
     let [forward, back] = scatterer.kernels(gpu, report)?;
     let size = cells.grid.size();
     let count = u64::from(size.element_product());
-    let widest = recipe.sweeps.iter().map(|sweep| sweep.extent().truncate().element_product()).max();
+    let widest = recipe.sweeps.iter().map(AxisSweep::columns).max();
     let scattered = storage(gpu, "scattered light", 32 * count);
     let stacks = storage(gpu, "stacks", 48 * count);
     let faces = storage(gpu, "faces", 64 * u64::from(widest.unwrap_or(1)));
     let indices: Vec<_> = (0..size.max_element()).map(|index| SliceUniform { index }).collect();
     let (slices, stride) = uniform_each(gpu, "slices", &indices);
-    let slice = wgpu::BufferBinding {
-        buffer: &slices,
-        offset: 0,
-        size: std::num::NonZeroU64::new(SliceUniform::SHADER_SIZE.get()),
-    };
     let light_volumes = [light_volume];
     let (sweeps, sampler) = (lookup::sweeps(gpu, &light_volumes), lookup::sampler(gpu));
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -257,16 +276,15 @@ fn scatter(
         let uniform = uniform_buffer(gpu, "scatter sweep", &sweep.uniform());
         let mut resources = vec![
             uniform.as_entire_binding(),
-            wgpu::BindingResource::Buffer(slice.clone()),
+            slice_binding(&slices),
             wgpu::BindingResource::TextureView(&cells.grid.view),
-            stacks.as_entire_binding(),
             faces.as_entire_binding(),
+            stacks.as_entire_binding(),
             scattered.as_entire_binding(),
         ];
         resources.extend(lookup::resources(&light_volumes, &sweeps, &sampler));
-        let extent = sweep.extent();
-        let columns = extent.x * extent.y;
-        let away = (0..extent.z).map(|slice| slice * stride);
+        let columns = sweep.columns();
+        let away = (0..sweep.slices()).map(|slice| slice * stride);
         let timing = timer.as_deref_mut().and_then(|timer| timer.time_compute("scattered_light"));
         forward.sweep(gpu, &mut encoder, &resources, columns, away.clone(), timing);
         let timing = timer.as_deref_mut().and_then(|timer| timer.time_compute("scattered_light"));

@@ -26,6 +26,17 @@ pub(crate) struct SummedLight {
     /// Greatest irradiance of a light.
     pub scale: f32,
     made: (Vec<u64>, Vec<Vec3>, bool),
+    lights: Vec<Entity>,
+    /// Counts up whenever the texels change.
+    pub version: u64,
+}
+
+impl SummedLight {
+    /// Irradiance of a light that is part of the sum.
+    pub fn irradiance(&self, light: Entity) -> Vec3 {
+        let index = self.lights.iter().position(|known| *known == light);
+        index.and_then(|index| self.made.1.get(index)).copied().unwrap_or_default()
+    }
 }
 
 mirror! {
@@ -41,6 +52,7 @@ mirror! {
 #[derive(Resource, Default, Debug)]
 pub(crate) struct Adder {
     kernel: Option<Kernel>,
+    version: u64,
 }
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -138,7 +150,9 @@ fn sum(
     }
     gpu.queue.submit([encoder.finish()]);
     report.ran("summed_light", &[("cells", count)]);
-    Ok(SummedLight { fluence, flux, scale, made })
+    adder.version += 1;
+    let lights = scattered.0.iter().map(|layer| layer.light).collect();
+    Ok(SummedLight { fluence, flux, scale, made, lights, version: adder.version })
 }
 
 fn make(gpu: &Gpu) -> Result<Kernel, GpuError> {

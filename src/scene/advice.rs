@@ -66,12 +66,14 @@ fn needs_light(entity: &SceneEntity, shading: Shading) -> bool {
     let is_volume = component::<Volume>(entity).is_some();
     let lit_volume = match component::<VolumeLighting>(entity) {
         Some(VolumeLighting::Gradient { ambient, .. }) => *ambient == 0.0,
+        Some(VolumeLighting::SingleScattering { .. }) => true,
+        Some(VolumeLighting::LightVolume { emission, .. }) => *emission == 0.0,
         _ => false,
     };
     is_mesh && !glows || is_volume && lit_volume
 }
 
-/// What is written for the scattering of a mesh, and has no effect.
+/// What is written for scattering, and has no effect.
 fn scattering(document: &SceneDocument, entity: &SceneEntity) -> Vec<Problem> {
     let note = |path: &str, message: String, help: String| {
         Problem::note(message).label("without effect").help(help).at(entity.place_of(path))
@@ -88,6 +90,14 @@ fn scattering(document: &SceneDocument, entity: &SceneEntity) -> Vec<Problem> {
         let help =
             "a highlight is `Subsurface.specular`; the look while `Shading` is `Local` is `Subsurface.local`";
         notes.push(note("Phong", message, help.into()));
+    }
+    if let Some(VolumeLighting::LightVolume { towards_eye: true, g, .. }) = component(entity)
+        && *g <= 0.0
+    {
+        let message =
+            format!("`towards_eye` has no effect on `{name}`, whose medium scatters no light forwards");
+        let help = "leave it out, or write a `g` above 0";
+        notes.push(note("VolumeLighting.towards_eye", message, help.into()));
     }
     let Some(maps) = component::<ScatteringMaps>(entity) else { return notes };
     if subsurface.is_none() {
