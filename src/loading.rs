@@ -125,6 +125,9 @@ fn load_volumes(
     for (entity, volume) in &volumes {
         match read_volume(volume) {
             Ok(data) => {
+                for note in &data.notes {
+                    problems.0.push(Problem::note(note.clone()).on(entity, "Volume"));
+                }
                 if data.non_finite > 0 {
                     let note = format!(
                         "{} of {} samples are not finite; they are drawn as transparent",
@@ -195,6 +198,8 @@ pub enum Contents {
         range: (f32, f32),
         /// Samples that are NaN or infinite.
         non_finite: u64,
+        /// How often each value occurs.
+        histogram: sources::Histogram,
     },
 }
 
@@ -209,7 +214,11 @@ pub fn contents(world: &mut World) -> Vec<(String, Contents)> {
         if let Some(LoadedVolume { data, .. }) = volume {
             let (size, format) = (data.size, data.samples.format());
             let (spacing, range, non_finite) = (data.spacing, data.range, data.non_finite);
-            all.push((name.to_string(), Contents::Volume { size, format, spacing, range, non_finite }));
+            let histogram = data.histogram.clone();
+            all.push((
+                name.to_string(),
+                Contents::Volume { size, format, spacing, range, non_finite, histogram },
+            ));
         }
     }
     all.sort_by(|a, b| a.0.cmp(&b.0));

@@ -15,7 +15,7 @@ pub use error::{LayoutError, SourceError};
 pub use mesh::{MeshData, MeshStatistics};
 pub use obj::read_obj;
 pub use raw::{RawLayout, read_raw};
-pub use volume::{BrickRanges, Endian, SampleFormat, Samples, VolumeData};
+pub use volume::{BrickRanges, Endian, Histogram, SampleFormat, Samples, VolumeData};
 
 #[cfg(test)]
 mod tests;

@@ -50,7 +50,7 @@ impl RawLayout {
         if self.skip_bytes > MAX_VOLUME_BYTES {
             return Err(LayoutError::Skip { skip_bytes: self.skip_bytes, limit: MAX_VOLUME_BYTES });
         }
-        checked_bytes(self.size, self.format)
+        checked_bytes(self.size, self.format.bytes())
     }
 }
 
