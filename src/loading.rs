@@ -139,15 +139,18 @@ fn load_volumes(
                 commands.entity(entity).insert(LoadedVolume { data, has_samples: true });
             }
             Err(error) => {
-                problems.0.push(Problem::error(error.to_string()).on(entity, field_at_fault(&error)));
+                let field = field_at_fault(volume, &error);
+                problems.0.push(Problem::error(error.to_string()).on(entity, field));
             }
         }
     }
 }
 
 /// The field of a [`Volume`] that an error is about.
-fn field_at_fault(error: &SourceError) -> &'static str {
+fn field_at_fault(volume: &Volume, error: &SourceError) -> &'static str {
     match error {
+        // The path of a file that says everything itself.
+        _ if matches!(volume, Volume::File(_)) => "Volume.0",
         SourceError::Layout { problem: LayoutError::Spacing { .. }, .. } => "Volume.spacing",
         SourceError::Layout { problem: LayoutError::Skip { .. }, .. } => "Volume.skip_bytes",
         SourceError::Layout { .. } | SourceError::Length { .. } => "Volume.size",
@@ -170,7 +173,12 @@ fn unload(
 }
 
 fn read_volume(volume: &Volume) -> Result<VolumeData, SourceError> {
-    let Volume::Raw { path, size, format, endian, spacing, skip_bytes } = volume;
+    let (path, size, format, endian, spacing, skip_bytes) = match volume {
+        Volume::File(path) => return sources::read_volume(path.path()),
+        Volume::Raw { path, size, format, endian, spacing, skip_bytes } => {
+            (path, size, format, endian, spacing, skip_bytes)
+        }
+    };
     let layout = RawLayout {
         size: size.to_array(),
         format: *format,
