@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 use super::{
     LayoutError, SourceError,
     stored::{Scaling, Stored},
-    volume::{Samples, VolumeData, check_spacing, checked_bytes},
+    volume::{MAX_VOLUME_BYTES, Samples, VolumeData, check_spacing, checked_bytes},
 };
 
 /// Axes closer to the world's than this are along them: the cosine of a twentieth of a degree.
@@ -47,6 +47,13 @@ impl Grid {
         let layout = |problem| SourceError::Layout { path: path.to_owned(), problem };
         let side = |axis: usize| u32::try_from(size.get(axis).copied().unwrap_or(1)).unwrap_or(u32::MAX);
         let size = [side(0), side(1), side(2)];
+        if size.contains(&u32::MAX) {
+            return Err(layout(LayoutError::TooLarge {
+                size,
+                bytes_per_voxel: bytes,
+                limit: MAX_VOLUME_BYTES,
+            }));
+        }
         let given = |axis: usize| axes.get(axis).map_or(1.0, |axis| axis.length());
         let spacing = DVec3::new(given(0), given(1), given(2)).as_vec3();
         check_spacing(spacing).map_err(layout)?;
@@ -96,7 +103,8 @@ impl Grid {
     }
 
     fn notes(&self, turn: &Turn) -> Vec<String> {
-        const ANATOMY: [[&str; 2]; 3] = [["right", "left"], ["anterior", "posterior"], ["superior", "inferior"]];
+        const ANATOMY: [[&str; 2]; 3] =
+            [["right", "left"], ["anterior", "posterior"], ["superior", "inferior"]];
         const WORLD: [[&str; 2]; 3] = [["+x", "-x"], ["+y", "-y"], ["+z", "-z"]];
         let names = if self.anatomical { ANATOMY } else { WORLD };
         let mut notes = Vec::new();
@@ -129,7 +137,8 @@ fn completed(given: &[DVec3]) -> [DVec3; 3] {
     };
     let x = given.first().copied().unwrap_or(DVec3::X);
     let across = [DVec3::Y, DVec3::Z, DVec3::X][x.abs().max_position()];
-    let y = given.get(1).copied().unwrap_or_else(|| pointing_up(across.reject_from(x).normalize_or(DVec3::Y)));
+    let y =
+        given.get(1).copied().unwrap_or_else(|| pointing_up(across.reject_from(x).normalize_or(DVec3::Y)));
     let z = given.get(2).copied().unwrap_or_else(|| pointing_up(x.cross(y).normalize_or(DVec3::Z)));
     [x, y, z]
 }
@@ -150,9 +159,9 @@ impl Turn {
         let units = axes.map(DVec3::normalize);
         let along = |from: &[usize; 3]| (0..3).map(|world| units[from[world]][world].abs()).sum::<f64>();
         // The first of equals: an axis halfway between two stays where it is.
-        let from = ORDERS.into_iter().fold(ORDERS[0], |best, order| {
-            if along(&order) > along(&best) + 1e-9 { order } else { best }
-        });
+        let from = ORDERS
+            .into_iter()
+            .fold(ORDERS[0], |best, order| if along(&order) > along(&best) + 1e-9 { order } else { best });
         Self { from, reversed: [0, 1, 2].map(|world| units[from[world]][world] < 0.0) }
     }
 
@@ -216,7 +225,9 @@ mod tests {
         assert_eq!(left.sample([0, 0, 0]), Some(5.0));
         assert_eq!(
             left.notes,
-            ["its axes point left, posterior, superior; they are turned so that x points right, y anterior and z superior"]
+            [
+                "its axes point left, posterior, superior; they are turned so that x points right, y anterior and z superior"
+            ]
         );
         // The file's axes are z, -x and y.
         let turned = turned([DVec3::Z * 2.0, DVec3::NEG_X * 3.0, DVec3::Y * 4.0], false);
@@ -230,7 +241,9 @@ mod tests {
     fn a_rotation_is_told_and_impossible_axes_are_refused() {
         let tilted = turned([DVec3::new(0.8, 0.6, 0.0), DVec3::new(-0.6, 0.8, 0.0), DVec3::Z], false);
         assert_eq!(tilted.notes, ["its axes are up to 36.9° off the world's; it is drawn upright"]);
-        let refused = |axes: [DVec3; 3]| Grid::new(Path::new("a"), &[2, 2, 2], &axes, false, 1).unwrap_err().to_string();
+        let refused = |axes: [DVec3; 3]| {
+            Grid::new(Path::new("a"), &[2, 2, 2], &axes, false, 1).unwrap_err().to_string()
+        };
         assert!(refused([DVec3::X, DVec3::X, DVec3::Z]).contains("lie in a plane"));
         assert!(refused([DVec3::ZERO, DVec3::X, DVec3::Z]).contains("spacing 0"));
         assert!(refused([DVec3::NAN, DVec3::X, DVec3::Z]).contains("spacing NaN"));

@@ -32,7 +32,9 @@ pub(super) fn read(path: &Path) -> Result<VolumeData, SourceError> {
     }
     let format = header.format()?;
     if header.get("ElementNumberOfChannels").is_some_and(|line| line.value != "1") {
-        return Err(header.error("ElementNumberOfChannels", "only 1 number a voxel is read: split the channels"));
+        return Err(
+            header.error("ElementNumberOfChannels", "only 1 number a voxel is read: split the channels")
+        );
     }
     let axes = header.axes(size.len())?;
     let entries = size.iter().skip(3).fold(1, |all: u64, &side| all.saturating_mul(side));
@@ -56,7 +58,11 @@ pub(super) fn read(path: &Path) -> Result<VolumeData, SourceError> {
         what: grid.what(format.bytes()),
         samples: grid.samples(),
         format,
-        endian: if header.is_true(&["ElementByteOrderMSB", "BinaryDataByteOrderMSB"]) { Endian::Big } else { Endian::Little },
+        endian: if header.is_true(&["ElementByteOrderMSB", "BinaryDataByteOrderMSB"]) {
+            Endian::Big
+        } else {
+            Endian::Little
+        },
         packing: header.packing(),
         offset: 0,
         skip: 0,
@@ -96,9 +102,12 @@ impl<'a> Header<'a> {
             }
             let (name, value) = text.split_once(['=', ':']).ok_or_else(|| {
                 let text: String = text.chars().take(40).collect();
-                lines.error(format!("expected `Name = value`, found `{text}`; the last line is ElementDataFile"))
+                lines.error(format!(
+                    "expected `Name = value`, found `{text}`; the last line is ElementDataFile"
+                ))
             })?;
-            let line = Line { name: name.trim().to_owned(), value: value.trim().to_owned(), line: lines.line };
+            let line =
+                Line { name: name.trim().to_owned(), value: value.trim().to_owned(), line: lines.line };
             let is_last = line.name.eq_ignore_ascii_case("ElementDataFile");
             let is_list = is_last && line.value.starts_with("LIST");
             header.lines.push(line);
@@ -158,7 +167,9 @@ impl<'a> Header<'a> {
     }
 
     fn format(&self) -> Result<StoredFormat, SourceError> {
-        let line = self.get("ElementType").ok_or_else(|| self.missing("ElementType", "such as `ElementType = MET_UCHAR`"))?;
+        let line = self
+            .get("ElementType")
+            .ok_or_else(|| self.missing("ElementType", "such as `ElementType = MET_UCHAR`"))?;
         Ok(match line.value.as_str() {
             "MET_CHAR" | "MET_ASCII_CHAR" => StoredFormat::I8,
             "MET_UCHAR" => StoredFormat::U8,
@@ -171,7 +182,11 @@ impl<'a> Header<'a> {
             "MET_ULONG_LONG" => StoredFormat::U64,
             "MET_FLOAT" => StoredFormat::F32,
             "MET_DOUBLE" => StoredFormat::F64,
-            _ => return Err(self.error("ElementType", "expected MET_CHAR to MET_ULONG_LONG, MET_FLOAT or MET_DOUBLE")),
+            _ => {
+                return Err(
+                    self.error("ElementType", "expected MET_CHAR to MET_ULONG_LONG, MET_FLOAT or MET_DOUBLE")
+                );
+            }
         })
     }
 
@@ -179,7 +194,8 @@ impl<'a> Header<'a> {
     fn axes(&self, dimensions: usize) -> Result<Vec<DVec3>, SourceError> {
         let spacing = self.numbers(&["ElementSpacing", "ElementSize"], dimensions)?;
         let spacing = spacing.unwrap_or_else(|| vec![1.0; dimensions]);
-        let matrix = self.numbers(&["TransformMatrix", "Orientation", "Rotation"], dimensions * dimensions)?;
+        let matrix =
+            self.numbers(&["TransformMatrix", "Orientation", "Rotation"], dimensions * dimensions)?;
         let unit = |row: usize, column: usize| if row == column { 1.0 } else { 0.0 };
         let direction = |axis: usize| {
             let component = |world: usize| {
@@ -233,9 +249,14 @@ impl<'a> Header<'a> {
         } else if header_size > 0.0 {
             piece.offset = piece.offset.saturating_add(header_size as u64);
         } else if header_size != 0.0 {
-            return Err(self.error("HeaderSize", "expected bytes from 0, or -1 for samples that are not packed"));
+            return Err(
+                self.error("HeaderSize", "expected bytes from 0, or -1 for samples that are not packed")
+            );
         }
-        if piece.packing == Packing::Zlib && piece.offset == 0 && file::begins_with(piece.path, &mut file, &GZIP_MAGIC)? {
+        if piece.packing == Packing::Zlib
+            && piece.offset == 0
+            && file::begins_with(piece.path, &mut file, &GZIP_MAGIC)?
+        {
             piece.packing = Packing::Gzip;
         }
         Ok(())

@@ -31,8 +31,11 @@ pub(super) fn is_nifti(head: &[u8]) -> bool {
 
 /// Whether it is the header that NIfTI grew out of.
 pub(super) fn is_analyze(head: &[u8]) -> bool {
-    let length = head.first_chunk::<4>().map(|bytes| [i32::from_le_bytes(*bytes), i32::from_be_bytes(*bytes)]);
-    length.is_some_and(|length| length.contains(&(BYTES_1 as i32))) && head.len() >= BYTES_1 && !is_nifti(head)
+    let length =
+        head.first_chunk::<4>().map(|bytes| [i32::from_le_bytes(*bytes), i32::from_be_bytes(*bytes)]);
+    length.is_some_and(|length| length.contains(&(BYTES_1 as i32)))
+        && head.len() >= BYTES_1
+        && !is_nifti(head)
 }
 
 /// Reads the first volume of a NIfTI file, plain or gzipped.
@@ -104,7 +107,8 @@ impl<'a> Header<'a> {
         let needed = if is_2 { BYTES_2 } else { BYTES_1 };
         let header = Self { path, bytes, endian, is_2 };
         if header.bytes.len() < needed {
-            let problem = format!("{} bytes; a NIfTI header has {needed}; the file is cut off", header.bytes.len());
+            let problem =
+                format!("{} bytes; a NIfTI header has {needed}; the file is cut off", header.bytes.len());
             return Err(header.error("header", problem));
         }
         Ok(header)
@@ -182,7 +186,8 @@ impl<'a> Header<'a> {
         if !(1..=7).contains(&count) {
             return Err(self.error("dim[0]", format!("{count} dimensions; expected 1 to 7")));
         }
-        let side = |index: usize| if index as i64 <= count { u64::try_from(dim(index)).unwrap_or(0) } else { 1 };
+        let side =
+            |index: usize| if index as i64 <= count { u64::try_from(dim(index)).unwrap_or(0) } else { 1 };
         Ok([1, 2, 3, 4, 5, 6, 7].map(side))
     }
 
@@ -220,7 +225,9 @@ impl<'a> Header<'a> {
             Some(axes) => (axes.map(|axis| axis * millimetres), true),
             None => {
                 if written.iter().any(Option::is_some) {
-                    notes.push("its sform and qform cannot be; only the sizes of its voxels are used".to_owned());
+                    notes.push(
+                        "its sform and qform cannot be; only the sizes of its voxels are used".to_owned(),
+                    );
                 }
                 let units = [DVec3::X, DVec3::Y, DVec3::Z];
                 ([0, 1, 2].map(|axis| units[axis] * sides[axis] * millimetres), false)
@@ -246,7 +253,13 @@ impl<'a> Header<'a> {
     }
 
     fn data_offset(&self) -> Result<u64, SourceError> {
-        let least = if !self.is_alone() { 0 } else if self.is_2 { 544 } else { 352 };
+        let least = if !self.is_alone() {
+            0
+        } else if self.is_2 {
+            544
+        } else {
+            352
+        };
         let offset =
             if self.is_2 { i64::from_le_bytes(self.field(168)) as f64 } else { self.float(108, 0, 0) };
         if !(0.0..=9e15).contains(&offset) {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::{
     SourceError, file,
-    stored::{Stored, StoredFormat},
+    stored::Stored,
     stream::{SampleStream, Surplus},
 };
 
@@ -93,12 +93,4 @@ pub(super) fn numbered(text: &str) -> Option<(Vec<String>, Option<&str>)> {
     };
     // One too many is refused by who asked.
     Some(((0..count.min(MAX_FILES)).map(name).collect(), rest.get(3).copied()))
-}
-
-/// Bytes of one sample, for those who only have the samples.
-pub(super) fn format_of(stored: &Stored) -> StoredFormat {
-    macro_rules! format {
-        ($($variant:ident)*) => { match stored { $(Stored::$variant(_) => StoredFormat::$variant,)* } };
-    }
-    format!(U8 I8 U16 I16 U32 I32 U64 I64 F32 F64)
 }

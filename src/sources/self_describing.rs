@@ -10,11 +10,7 @@
 //!
 //! Every reader takes memory by what is in the file, never by what its header says, which the crates for these formats do not.
 
-use std::{
-    fs,
-    io::Read,
-    path::Path,
-};
+use std::{fs, io::Read, path::Path};
 
 use flate2::read::MultiGzDecoder;
 
@@ -87,6 +83,15 @@ fn is_meta_image(head: &[u8]) -> bool {
 }
 
 fn unknown(path: &Path, head: &[u8], ending: &str) -> SourceError {
+    let header =
+        ["mhd", "nhdr"].map(|ending| path.with_extension(ending)).into_iter().find(|path| path.is_file());
+    if let Some(header) = header {
+        return SourceError::Unsupported {
+            path: path.to_owned(),
+            found: "bare samples do not say what they are".to_owned(),
+            mend: format!("name their header, {}", header.display()),
+        };
+    }
     let (found, mend) = match ending {
         "nrrd" | "nhdr" => ("it does not begin with `NRRD`", "fetch or export it again"),
         "nii" | "hdr" | "gz" if nifti::is_analyze(head) => {
@@ -98,6 +103,7 @@ fn unknown(path: &Path, head: &[u8], ending: &str) -> SourceError {
         "raw" | "img" | "bin" | "dat" => {
             ("bare samples do not say what they are", "write `Volume: Raw(path: …, size: …, format: …)`")
         }
+        "slc" => ("SLC volumes are not read", "convert it to NRRD or MetaImage"),
         "vti" | "vtu" | "vtr" => ("VTK's XML files are not read", "save it as legacy VTK, .vtk"),
         "gz" => (
             "what it unpacks to is not NIfTI",
@@ -112,4 +118,4 @@ fn unknown(path: &Path, head: &[u8], ending: &str) -> SourceError {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -7,7 +7,10 @@ use std::{path::Path, str::FromStr};
 
 use bytemuck::Pod;
 
-use super::{SourceError, volume::{SampleFormat, Samples}};
+use super::{
+    SourceError,
+    volume::{SampleFormat, Samples},
+};
 
 /// What the scaling of a file does to its samples: `slope * sample + intercept`.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,11 +122,6 @@ impl From<SampleFormat> for StoredFormat {
 }
 
 impl Stored {
-    /// How many samples there are.
-    pub fn len(&self) -> usize {
-        with_samples!(self, samples => samples.len())
-    }
-
     /// Scales the samples and brings them to a type that is drawn; see the module. What is lost is added to `notes`.
     pub fn into_samples(
         self,
@@ -156,8 +154,8 @@ fn convert<T: Element>(
     let values = || samples.iter().enumerate().map(|(index, sample)| scaling.apply(index, sample.value()));
     let whole = T::WHOLE && values().all(|value| value.fract() == 0.0);
     if whole {
-        let (least, greatest) =
-            values().fold((f64::MAX, f64::MIN), |(least, greatest), value| (least.min(value), greatest.max(value)));
+        let (least, greatest) = values()
+            .fold((f64::MAX, f64::MIN), |(least, greatest), value| (least.min(value), greatest.max(value)));
         let within = |low: f64, high: f64| least >= low && greatest <= high;
         if within(0.0, 255.0) {
             return Ok(Samples::U8(collect(path, values().map(|value| value as u8))?));
@@ -170,7 +168,8 @@ fn convert<T: Element>(
         }
     }
     // Scaled samples are measurements whose last digits nobody wrote.
-    let rounded = if scaling.runs.is_empty() { samples.iter().filter(|sample| !sample.fits_f32()).count() } else { 0 };
+    let rounded =
+        if scaling.runs.is_empty() { samples.iter().filter(|sample| !sample.fits_f32()).count() } else { 0 };
     if rounded > 0 {
         let of = if T::WHOLE { "integers" } else { "64-bit floats" };
         notes.push(format!("{rounded} of {} {of} are rounded to 32-bit floats", samples.len()));

@@ -96,7 +96,12 @@ impl SampleStream<'_> {
     ///
     /// If the file does not hold them. A plain file's length is compared before anything is allocated; a packed one's memory
     /// grows with what comes out.
-    pub fn read(&self, mut file: File, file_bytes: u64, notes: &mut Vec<String>) -> Result<Stored, SourceError> {
+    pub fn read(
+        &self,
+        mut file: File,
+        file_bytes: u64,
+        notes: &mut Vec<String>,
+    ) -> Result<Stored, SourceError> {
         let rest = file_bytes.saturating_sub(self.offset);
         if self.packing == Packing::Plain
             && (rest < self.needed() || (rest > self.needed() && self.surplus == Surplus::Refuse))
@@ -136,13 +141,20 @@ impl SampleStream<'_> {
     }
 
     /// Reads every sample, growing as they arrive, and puts their bytes into the machine's order.
-    fn fill_samples<T: Element>(&self, reader: &mut impl Read, samples: &mut Vec<T>) -> Result<(), SourceError> {
+    fn fill_samples<T: Element>(
+        &self,
+        reader: &mut impl Read,
+        samples: &mut Vec<T>,
+    ) -> Result<(), SourceError> {
         let count = usize::try_from(self.samples).map_err(|_| self.out_of_memory())?;
         while samples.len() < count {
             let start = samples.len();
             // A plain file is known to hold them all.
-            let step =
-                if self.packing == Packing::Plain { count } else { start.max(FIRST_SAMPLES).min(count - start) };
+            let step = if self.packing == Packing::Plain {
+                count
+            } else {
+                start.max(FIRST_SAMPLES).min(count - start)
+            };
             samples.try_reserve_exact(step).map_err(|_| self.out_of_memory())?;
             samples.resize(start + step, T::zeroed());
             let before = self.skip + (start * size_of::<T>()) as u64;
@@ -221,7 +233,8 @@ impl SampleStream<'_> {
 
     /// The error for a stream of `bytes` bytes, or of more where they were not all counted.
     pub fn length_error(&self, bytes: u64, or_more: bool, hint: &str) -> SourceError {
-        let unpacked = if matches!(self.packing, Packing::Plain | Packing::Unpacked) { "" } else { "unpacked " };
+        let unpacked =
+            if matches!(self.packing, Packing::Plain | Packing::Unpacked) { "" } else { "unpacked " };
         let at_least = if or_more { "at least " } else { "" };
         let mut place = String::new();
         if self.skip > 0 {

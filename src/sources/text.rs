@@ -27,15 +27,13 @@ pub(super) struct HeaderLines<'a> {
     pub line: u64,
     /// Bytes that were read.
     pub offset: u64,
-    /// How long the file is, in bytes.
-    pub file_bytes: u64,
 }
 
 impl<'a> HeaderLines<'a> {
     /// Opens a file.
     pub fn open(path: &'a Path) -> Result<Self, SourceError> {
-        let (file, file_bytes) = file::open(path)?;
-        Ok(Self { path, reader: BufReader::new(file), line: 0, offset: 0, file_bytes })
+        let (file, _) = file::open(path)?;
+        Ok(Self { path, reader: BufReader::new(file), line: 0, offset: 0 })
     }
 
     /// The next line without its end; `None` at the end of the file. Bytes that are no UTF-8 become U+FFFD.
@@ -108,7 +106,8 @@ fn next_word(reader: &mut impl BufRead) -> io::Result<Option<String>> {
     let mut word = Vec::new();
     loop {
         let buffer = reader.fill_buf()?;
-        let spaces = if word.is_empty() { buffer.iter().take_while(|byte| is_space(byte)).count() } else { 0 };
+        let spaces =
+            if word.is_empty() { buffer.iter().take_while(|byte| is_space(byte)).count() } else { 0 };
         let letters = buffer[spaces..].iter().take_while(|byte| !is_space(byte)).count();
         word.extend_from_slice(&buffer[spaces..spaces + letters]);
         let (used, end) = (spaces + letters, spaces + letters < buffer.len() || buffer.is_empty());

@@ -30,19 +30,28 @@ pub(super) fn read(path: &Path) -> Result<VolumeData, SourceError> {
     // The magic was looked at to find this reader; the second line is a title.
     lines.next()?;
     lines.next()?;
-    let is_text = match lines.next()?.as_deref().map(str::trim) {
+    let mut kind = lines.next()?;
+    // Some write an empty line after the title.
+    while kind.as_deref().is_some_and(|line| line.trim().is_empty()) {
+        kind = lines.next()?;
+    }
+    let is_text = match kind.as_deref().map(str::trim) {
         Some("ASCII") => true,
         Some("BINARY") => false,
         found => return Err(expected(&lines, "`ASCII` or `BINARY`", found.unwrap_or("the end"))),
     };
     let mut header = Header { size: None, spacing: [1.0; 3], points: None };
     let array = loop {
-        let line = lines.next()?.ok_or_else(|| lines.error("the file ends before its point data; is it cut off?"))?;
+        let line = lines
+            .next()?
+            .ok_or_else(|| lines.error("the file ends before its point data; is it cut off?"))?;
         if let Some(array) = header.line(path, &mut lines, &line)? {
             break array;
         }
     };
-    let Some(size) = header.size else { return Err(lines.error("DIMENSIONS is missing in front of the point data")) };
+    let Some(size) = header.size else {
+        return Err(lines.error("DIMENSIONS is missing in front of the point data"));
+    };
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
     let axes = [0, 1, 2].map(|axis| axes[axis] * header.spacing[axis]);
     let bytes = array.format.bytes();
@@ -86,7 +95,12 @@ struct Array {
 
 impl Header {
     /// Takes in one line; the array whose samples come next, if it was the last one in front of them.
-    fn line(&mut self, path: &Path, lines: &mut HeaderLines, line: &str) -> Result<Option<Array>, SourceError> {
+    fn line(
+        &mut self,
+        path: &Path,
+        lines: &mut HeaderLines,
+        line: &str,
+    ) -> Result<Option<Array>, SourceError> {
         let (keyword, rest) = line.trim().split_once(char::is_whitespace).unwrap_or((line.trim(), ""));
         let rest = rest.trim();
         match keyword.to_uppercase().as_str() {
@@ -101,7 +115,9 @@ impl Header {
             "CELL_DATA" => {
                 return Err(unsupported(path, "it has cell data".to_owned(), "convert them to point data"));
             }
-            "POINT_DATA" => self.points = Some(rest.parse().map_err(|_| expected(lines, "a count of points", rest))?),
+            "POINT_DATA" => {
+                self.points = Some(rest.parse().map_err(|_| expected(lines, "a count of points", rest))?)
+            }
             "SCALARS" if self.points.is_some() => return scalars(lines, rest).map(Some),
             "FIELD" if self.points.is_some() => return field(lines).map(Some),
             "SCALARS" | "FIELD" => return Err(expected(lines, "POINT_DATA in front of arrays", keyword)),
@@ -115,7 +131,11 @@ impl Header {
     }
 }
 
-fn three<T: std::str::FromStr>(lines: &HeaderLines, keyword: &str, rest: &str) -> Result<[T; 3], SourceError> {
+fn three<T: std::str::FromStr>(
+    lines: &HeaderLines,
+    keyword: &str,
+    rest: &str,
+) -> Result<[T; 3], SourceError> {
     let three = numbers(rest).and_then(|numbers| numbers.try_into().ok());
     three.ok_or_else(|| expected(lines, &format!("three numbers after {keyword}"), rest))
 }

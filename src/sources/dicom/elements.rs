@@ -221,7 +221,19 @@ impl Elements {
         }
         let is_long = matches!(
             &vr,
-            b"OB" | b"OD" | b"OF" | b"OL" | b"OV" | b"OW" | b"SQ" | b"SV" | b"UC" | b"UN" | b"UR" | b"UT" | b"UV"
+            b"OB"
+                | b"OD"
+                | b"OF"
+                | b"OL"
+                | b"OV"
+                | b"OW"
+                | b"SQ"
+                | b"SV"
+                | b"UC"
+                | b"UN"
+                | b"UR"
+                | b"UT"
+                | b"UV"
         );
         Ok((vr, if is_long { self.u32()? } else { self.u16([c, d]).into() }))
     }
@@ -261,7 +273,8 @@ impl Elements {
         let from_ahead = self.ahead.len().min(usize::try_from(bytes).unwrap_or(usize::MAX));
         self.ahead.drain(..from_ahead);
         let rest = (&mut self.reader).take(bytes - from_ahead as u64);
-        let skipped = io::copy(&mut { rest }, &mut io::sink()).map_err(|cause| file::io_error(&self.path, cause))?;
+        let skipped =
+            io::copy(&mut { rest }, &mut io::sink()).map_err(|cause| file::io_error(&self.path, cause))?;
         let skipped = skipped + from_ahead as u64;
         self.position += skipped;
         if skipped < bytes {

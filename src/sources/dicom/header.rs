@@ -153,13 +153,17 @@ impl Header {
             let found = format!("its pixels are colours ({})", self.photometric);
             return Err(unsupported(path, &found, "only images of one number a pixel make a volume"));
         }
-        let is_known = if self.is_float { [32, 64].contains(&self.bits) } else { [8, 16, 32].contains(&self.bits) };
+        let is_known =
+            if self.is_float { [32, 64].contains(&self.bits) } else { [8, 16, 32].contains(&self.bits) };
         if !is_known {
             let found = format!("its pixels have {} bits", self.bits);
             return Err(unsupported(path, &found, "convert them to 8, 16 or 32 bits"));
         }
-        if !self.is_float && (self.stored_bits == 0 || self.stored_bits > self.bits || self.high_bit >= self.bits
-            || self.high_bit + 1 < self.stored_bits)
+        if !self.is_float
+            && (self.stored_bits == 0
+                || self.stored_bits > self.bits
+                || self.high_bit >= self.bits
+                || self.high_bit + 1 < self.stored_bits)
         {
             return Err(SourceError::Field {
                 path: path.to_owned(),
@@ -197,9 +201,7 @@ fn is_wanted(tag: u32) -> bool {
             | 0x0028_0010
             | 0x0028_0011
             | 0x0028_0030
-            | 0x0028_0100..=0x0028_0103
-            | 0x0028_1052
-            | 0x0028_1053
+            | 0x0028_0100..=0x0028_0103 | 0x0028_1052 | 0x0028_1053
     )
 }
 
@@ -210,7 +212,10 @@ pub(super) fn text(value: &[u8]) -> String {
 
 /// Decimal numbers between backslashes; none if one of them is not finite.
 fn numbers(value: &[u8]) -> Vec<f64> {
-    let numbers = text(value).split('\\').map(|number| number.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect();
+    let numbers = text(value)
+        .split('\\')
+        .map(|number| number.trim().parse().ok().filter(|n: &f64| n.is_finite()))
+        .collect();
     Option::<Vec<f64>>::unwrap_or_default(numbers)
 }
 

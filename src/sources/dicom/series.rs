@@ -8,7 +8,11 @@ use std::{
 use glam::DVec3;
 
 use super::{SourceError, VolumeData, header::Header, pixels};
-use crate::sources::{grid::Grid, pieces, stored::{Scaling, Stored}};
+use crate::sources::{
+    grid::Grid,
+    pieces,
+    stored::{Scaling, Stored},
+};
 
 /// From DICOM's left, posterior, superior to right, anterior, superior.
 const RAS: DVec3 = DVec3::new(-1.0, -1.0, 1.0);
@@ -72,7 +76,11 @@ struct Slice {
 }
 
 /// The volume of slices that belong together.
-pub(super) fn assemble(path: &Path, files: &[File], mut notes: Vec<String>) -> Result<VolumeData, SourceError> {
+pub(super) fn assemble(
+    path: &Path,
+    files: &[File],
+    mut notes: Vec<String>,
+) -> Result<VolumeData, SourceError> {
     let Some((_, first)) = files.first() else {
         return Err(super::header::unsupported(path, "no slices", "name a folder with slices in it"));
     };
@@ -87,7 +95,9 @@ pub(super) fn assemble(path: &Path, files: &[File], mut notes: Vec<String>) -> R
     let axes = [x.normalize_or_zero() * along_x, y.normalize_or_zero() * along_y, normal * distance];
     let format = pixels::format(first);
     let size = [first.columns.into(), first.rows.into(), slices.len() as u64];
-    let grid = Grid::new(path, &size, &axes.map(|axis| axis * RAS), first.orientation.is_some(), format.bytes())?;
+    let anatomical = first.orientation.is_some();
+    let axes = axes.map(|axis| if anatomical { axis * RAS } else { axis });
+    let grid = Grid::new(path, &size, &axes, anatomical, format.bytes())?;
     let pixels = usize::from(first.columns) * usize::from(first.rows);
     let stored = gather(path, files, &slices, pixels, &mut notes)?;
     let mut runs: Vec<[f64; 2]> = slices.iter().map(|slice| slice.scale).collect();
@@ -131,7 +141,9 @@ fn sorted(slices: &mut Vec<Slice>, first: &Header, normal: DVec3, notes: &mut Ve
         return distance;
     }
     let place = |slice: &Slice| slice.place.unwrap_or(0.0);
-    slices.sort_by(|a, b| place(a).total_cmp(&place(b)).then((a.instance, a.frame).cmp(&(b.instance, b.frame))));
+    slices.sort_by(|a, b| {
+        place(a).total_cmp(&place(b)).then((a.instance, a.frame).cmp(&(b.instance, b.frame)))
+    });
     let all = slices.len();
     slices.dedup_by(|later, earlier| (place(later) - place(earlier)).abs() < SAME_PLACE);
     if slices.len() < all {
@@ -149,10 +161,14 @@ fn sorted(slices: &mut Vec<Slice>, first: &Header, normal: DVec3, notes: &mut Ve
             "its slices are {least:.3} to {greatest:.3} mm apart (are some missing?); {middle:.3} mm is taken for all"
         ));
     }
-    if let (Some(low), Some(high)) = (slices.first().and_then(|s| s.position), slices.last().and_then(|s| s.position)) {
+    if let (Some(low), Some(high)) =
+        (slices.first().and_then(|s| s.position), slices.last().and_then(|s| s.position))
+    {
         let degrees = (high - low).normalize_or(normal).dot(normal).clamp(-1.0, 1.0).acos().to_degrees();
         if degrees > 0.5 {
-            notes.push(format!("its slices are stacked at {degrees:.1}° (a tilted gantry); it is drawn upright"));
+            notes.push(format!(
+                "its slices are stacked at {degrees:.1}° (a tilted gantry); it is drawn upright"
+            ));
         }
     }
     if greatest - least > EVEN * middle { middle } else { gaps.iter().sum::<f64>() / gaps.len() as f64 }

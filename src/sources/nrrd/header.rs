@@ -82,7 +82,11 @@ impl Header {
             fields.0.push(Field { name, value, line: lines.line });
             if is_list {
                 while let Some(name) = lines.next()?.filter(|_| fields.0.len() < MAX_FILES) {
-                    fields.0.push(Field { name: String::new(), value: name.trim().to_owned(), line: lines.line });
+                    fields.0.push(Field {
+                        name: String::new(),
+                        value: name.trim().to_owned(),
+                        line: lines.line,
+                    });
                 }
                 break;
             }
@@ -122,7 +126,9 @@ struct Fields(Vec<Field>);
 
 impl Fields {
     fn get(&self, name: &str) -> Option<&Field> {
-        self.0.iter().find(|field| field.name.replace(' ', "") == name.replace(' ', "") && !field.name.is_empty())
+        self.0
+            .iter()
+            .find(|field| field.name.replace(' ', "") == name.replace(' ', "") && !field.name.is_empty())
     }
 
     fn needed(&self, path: &Path, name: &str, example: &str) -> Result<&Field, SourceError> {
@@ -177,7 +183,9 @@ impl Fields {
             numbers(&sizes.value).ok_or_else(|| sizes.error(path, "expected whole numbers above 0"))?;
         let dimension = self.needed(path, "dimension", "such as `dimension: 3`")?;
         if dimension.value.parse() != Ok(sizes.len()) || !(1..=16).contains(&sizes.len()) {
-            return Err(dimension.error(path, &format!("expected the count of `sizes`, {}, at most 16", sizes.len())));
+            return Err(
+                dimension.error(path, &format!("expected the count of `sizes`, {}, at most 16", sizes.len()))
+            );
         }
         let spacings: Vec<Option<f64>> = match self.get("spacings") {
             None => vec![None; sizes.len()],
@@ -190,11 +198,11 @@ impl Fields {
         };
         let directions: Option<Vec<Option<DVec3>>> = match self.get("space directions") {
             None => None,
-            Some(field) => Some(
-                vectors(&field.value)
-                    .filter(|vectors| vectors.len() == sizes.len())
-                    .ok_or_else(|| field.error(path, "expected a vector such as (1,0,0), or none, for each axis"))?,
-            ),
+            Some(field) => {
+                Some(vectors(&field.value).filter(|vectors| vectors.len() == sizes.len()).ok_or_else(
+                    || field.error(path, "expected a vector such as (1,0,0), or none, for each axis"),
+                )?)
+            }
         };
         let kinds: Vec<String> = self.get("kinds").map_or(Vec::new(), |field| {
             field.value.split_whitespace().map(|kind| kind.trim_matches('"').to_owned()).collect()
@@ -202,7 +210,8 @@ impl Fields {
         let axis = |index: usize| {
             let kind = kinds.get(index).cloned().unwrap_or_else(|| "no kind".to_owned());
             let direction = directions.as_ref().map(|directions| directions[index]);
-            let kind_is_space = matches!(&*kind.to_lowercase(), "domain" | "space" | "no kind" | "???" | "none");
+            let kind_is_space =
+                matches!(&*kind.to_lowercase(), "domain" | "space" | "no kind" | "???" | "none");
             Axis {
                 number: index + 1,
                 size: sizes[index],
@@ -231,7 +240,9 @@ impl Fields {
             return Err(field.error(path, &format!("expected 1 to {MAX_FILES} data files")));
         }
         // By default each file is one slice along the last axis; slabs of it are read one after the other as well.
-        if sub.is_some_and(|sub| !sub.parse().is_ok_and(|sub: usize| sub == dimension || sub + 1 == dimension)) {
+        if sub
+            .is_some_and(|sub| !sub.parse().is_ok_and(|sub: usize| sub == dimension || sub + 1 == dimension))
+        {
             let found = format!("line {}: files of fewer axes than a slice", field.line);
             return Err(unsupported(path, found, "join them with `unu join` or `unu save`"));
         }
@@ -263,13 +274,22 @@ fn sample_format(path: &Path, field: &Field) -> Result<StoredFormat, SourceError
     Ok(match field.value.to_lowercase().as_str() {
         "signed char" | "int8" | "int8_t" => StoredFormat::I8,
         "uchar" | "unsigned char" | "uint8" | "uint8_t" => StoredFormat::U8,
-        "short" | "short int" | "signed short" | "signed short int" | "int16" | "int16_t" => StoredFormat::I16,
+        "short" | "short int" | "signed short" | "signed short int" | "int16" | "int16_t" => {
+            StoredFormat::I16
+        }
         "ushort" | "unsigned short" | "unsigned short int" | "uint16" | "uint16_t" => StoredFormat::U16,
         "int" | "signed int" | "int32" | "int32_t" => StoredFormat::I32,
         "uint" | "unsigned int" | "uint32" | "uint32_t" => StoredFormat::U32,
-        "longlong" | "long long" | "long long int" | "signed long long" | "signed long long int" | "int64"
+        "longlong"
+        | "long long"
+        | "long long int"
+        | "signed long long"
+        | "signed long long int"
+        | "int64"
         | "int64_t" => StoredFormat::I64,
-        "ulonglong" | "unsigned long long" | "unsigned long long int" | "uint64" | "uint64_t" => StoredFormat::U64,
+        "ulonglong" | "unsigned long long" | "unsigned long long int" | "uint64" | "uint64_t" => {
+            StoredFormat::U64
+        }
         "float" => StoredFormat::F32,
         "double" => StoredFormat::F64,
         _ => return Err(field.error(path, "expected int8 to uint64, float or double")),
@@ -294,7 +314,9 @@ fn packing(path: &Path, field: &Field) -> Result<Packing, SourceError> {
 fn anatomical(space: &str) -> Option<DVec3> {
     match space.to_lowercase().as_str() {
         "ras" | "right-anterior-superior" | "rast" | "right-anterior-superior-time" => Some(DVec3::ONE),
-        "las" | "left-anterior-superior" | "last" | "left-anterior-superior-time" => Some(DVec3::new(-1.0, 1.0, 1.0)),
+        "las" | "left-anterior-superior" | "last" | "left-anterior-superior-time" => {
+            Some(DVec3::new(-1.0, 1.0, 1.0))
+        }
         "lps" | "left-posterior-superior" | "lpst" | "left-posterior-superior-time" => {
             Some(DVec3::new(-1.0, -1.0, 1.0))
         }
