@@ -83,8 +83,10 @@ fn is_meta_image(head: &[u8]) -> bool {
 }
 
 fn unknown(path: &Path, head: &[u8], ending: &str) -> SourceError {
-    let header =
-        ["mhd", "nhdr"].map(|ending| path.with_extension(ending)).into_iter().find(|path| path.is_file());
+    let header = ["mhd", "nhdr"]
+        .map(|ending| path.with_extension(ending))
+        .into_iter()
+        .find(|header| header != path && header.is_file());
     if let Some(header) = header {
         return SourceError::Unsupported {
             path: path.to_owned(),
