@@ -60,7 +60,8 @@ impl Grid {
         checked_bytes(size, bytes).map_err(layout)?;
         let grid = Self { size, axes: completed(axes), anatomical };
         let [x, y, z] = grid.axes.map(DVec3::normalize);
-        if !(x.cross(y).dot(z).abs() > FLAT) {
+        let spanned = x.cross(y).dot(z).abs();
+        if spanned.is_nan() || spanned <= FLAT {
             return Err(SourceError::Field {
                 path: path.to_owned(),
                 field: "directions of the axes".to_owned(),

@@ -3,6 +3,7 @@
 //! The `nrrd` crates of the registry read files of their own writing; lists of files, skips and the axes are done here.
 
 mod header;
+mod words;
 
 use std::{
     io::{BufRead, BufReader},

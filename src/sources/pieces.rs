@@ -19,7 +19,7 @@ pub(super) fn read(
     place: impl Fn(&mut SampleStream) -> Result<(), SourceError>,
 ) -> Result<Stored, SourceError> {
     let count = files.len() as u64;
-    if count == 0 || whole.samples % count != 0 {
+    if count == 0 || !whole.samples.is_multiple_of(count) {
         return Err(SourceError::Unsupported {
             path: whole.path.to_owned(),
             found: format!("{} do not divide by {count} data files", whole.what),

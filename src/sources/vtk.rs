@@ -116,7 +116,7 @@ impl Header {
                 return Err(unsupported(path, "it has cell data".to_owned(), "convert them to point data"));
             }
             "POINT_DATA" => {
-                self.points = Some(rest.parse().map_err(|_| expected(lines, "a count of points", rest))?)
+                self.points = Some(rest.parse().map_err(|_| expected(lines, "a count of points", rest))?);
             }
             "SCALARS" if self.points.is_some() => return scalars(lines, rest).map(Some),
             "FIELD" if self.points.is_some() => return field(lines).map(Some),
