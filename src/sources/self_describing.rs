@@ -5,7 +5,7 @@
 //! | NRRD | .nrrd, .nhdr with its data | own: a text header |
 //! | NIfTI-1, NIfTI-2 | .nii, .nii.gz, .hdr with .img | own: a binary structure |
 //! | MetaImage | .mha, .mhd with its data | own: a text header |
-//! | DICOM | a folder with slices, .dcm | own: see [`super::dicom`] |
+//! | DICOM | a folder with slices, .dcm | own: a walk over the elements that matter |
 //! | legacy VTK | .vtk with structured points | own: a text header |
 //!
 //! Every reader takes memory by what is in the file, never by what its header says, which the crates for these formats do not.
