@@ -1,9 +1,11 @@
 //! DICOM: a folder of slices, or one file of one frame or many.
 //!
-//! The `dicom-object` crates (0.10.1) take memory by the lengths a file declares, go down nested sequences by recursion, have
-//! known panics on malformed files (Enet4/dicom-rs issue 543) and bring tables of character sets under CC0. Of all of DICOM a
-//! volume needs twenty elements: those are read here, from a walk over the file that keeps nothing else. Samples may be plain,
-//! in either byte order, deflated or run-length coded; JPEG and its relatives are refused with what converts them.
+//! `dicom-object` 0.10.1 takes memory by the length an element declares (1.9 GB for a damaged file of at most 40 kB),
+//! overflows the stack at 10000 nested sequences, and brings tables of character sets under CC0-1.0; `dicom-pixeldata` panics
+//! where bits stored are none or too many, and in run-length coding. Counts are in [`super::self_describing`]. No check
+//! beforehand helps that does not itself walk over the elements. Of all of DICOM a volume needs twenty: those are read here,
+//! from a walk over the file that keeps nothing else. Samples may be plain, in either byte order, deflated or run-length
+//! coded; JPEG and its relatives are refused with what converts them.
 
 mod elements;
 mod header;

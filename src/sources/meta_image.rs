@@ -1,6 +1,7 @@
 //! MetaImage: lines `Name = value`, then samples, in the same file (.mha) or others (.mhd).
 //!
-//! No crate of the registry reads it (<https://itk.org/Wiki/MetaIO/Documentation>).
+//! No crate of the registry was found that reads it and is under a licence allowed here; see [`super::self_describing`]. The
+//! format is that of <https://itk.org/Wiki/MetaIO/Documentation>.
 
 use std::path::{Path, PathBuf};
 

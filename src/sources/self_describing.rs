@@ -8,7 +8,22 @@
 //! | DICOM | a folder with slices, .dcm | own: a walk over the elements that matter |
 //! | legacy VTK | .vtk with structured points | own: a text header |
 //!
-//! Every reader takes memory by what is in the file, never by what its header says, which the crates for these formats do not.
+//! Every reader takes memory by what is in the file, never by what its header says. What crates did in its place, in November
+//! 2026, with the files of the data folder, and with 1000 copies of small ones that were damaged by seed, each in a process of
+//! its own with 2 GB of addresses (greedy: one request of more than 64 times the file and 2 MiB):
+//!
+//! | crate | published | files read | panics | aborts | greedy | and |
+//! |---|---|---|---|---|---|---|
+//! | `nifti` 0.18.0 | 2026-09 | 18 of 18 | 68 | 0 | 36 | NIfTI-2 is refused |
+//! | `medrs` 0.2.0 | 2026-07 | 18 of 18 | 0 | 0 | 0 | refuses .hdr with .img; needs C and CMake to build |
+//! | `dicom-pixeldata` 0.10.1 | 2026-10 | 4 of 4 | 45 | 1 | 155 | six packages under CC0-1.0, which is not allowed here |
+//! | `dicom-object` 0.10.1 | 2026-10 | 4 of 4 | 0 | 0 | 155 | the same; its stack overflows at 10000 nested sequences |
+//! | `vtkio` 0.6.3 | 2021-03 | 0 of 1 | 0 | 6 | 4 | of data that are cut off it loads none, and says nothing |
+//! | `vtkio` 0.7.0-rc2 | 2026-03 | 0 of 1 | 0 | 0 | 0 | a release candidate; its errors name no line |
+//! | these readers | | 23 of 23 | 0 | 0 | 0 | |
+//!
+//! For NRRD and MetaImage one crate was found, `bioformats` 0.1.8, under the GPL, which is not allowed here and was not tried.
+//! These readers were given 1000 damaged files of either as well: no panic, no abort, none greedy.
 
 use std::{fs, io::Read, path::Path};
 

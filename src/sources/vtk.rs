@@ -1,7 +1,10 @@
 //! Legacy VTK files of structured points, as text or binary.
 //!
-//! `vtkio` reads every kind of dataset into a model of all of VTK, with memory by the header's word; a grid's few lines are
-//! read here (<https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html>).
+//! `vtkio` 0.6.3 takes memory by the header's word, and of data that are cut off loads none without an error. 0.7.0-rc2 does
+//! neither, and none of 11000 damaged files brought it down; but it is a release candidate, refuses the empty line that some
+//! write after the title, accepts sizes that the samples do not fill, and says `Parse error: Digit` and no line. Counts are
+//! in [`super::self_describing`]. A grid's few lines are read here
+//! (<https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html>).
 
 use std::path::Path;
 
