@@ -125,6 +125,9 @@ fn load_volumes(
     for (entity, volume) in &volumes {
         match read_volume(volume) {
             Ok(data) => {
+                for note in &data.notes {
+                    problems.0.push(Problem::note(note.clone()).on(entity, "Volume"));
+                }
                 if data.non_finite > 0 {
                     let note = format!(
                         "{} of {} samples are not finite; they are drawn as transparent",
@@ -136,15 +139,18 @@ fn load_volumes(
                 commands.entity(entity).insert(LoadedVolume { data, has_samples: true });
             }
             Err(error) => {
-                problems.0.push(Problem::error(error.to_string()).on(entity, field_at_fault(&error)));
+                let field = field_at_fault(volume, &error);
+                problems.0.push(Problem::error(error.to_string()).on(entity, field));
             }
         }
     }
 }
 
 /// The field of a [`Volume`] that an error is about.
-fn field_at_fault(error: &SourceError) -> &'static str {
+fn field_at_fault(volume: &Volume, error: &SourceError) -> &'static str {
     match error {
+        // The path of a file that says everything itself.
+        _ if matches!(volume, Volume::File(_)) => "Volume.0",
         SourceError::Layout { problem: LayoutError::Spacing { .. }, .. } => "Volume.spacing",
         SourceError::Layout { problem: LayoutError::Skip { .. }, .. } => "Volume.skip_bytes",
         SourceError::Layout { .. } | SourceError::Length { .. } => "Volume.size",
@@ -167,7 +173,12 @@ fn unload(
 }
 
 fn read_volume(volume: &Volume) -> Result<VolumeData, SourceError> {
-    let Volume::Raw { path, size, format, endian, spacing, skip_bytes } = volume;
+    let (path, size, format, endian, spacing, skip_bytes) = match volume {
+        Volume::File(path) => return sources::read_volume(path.path()),
+        Volume::Raw { path, size, format, endian, spacing, skip_bytes } => {
+            (path, size, format, endian, spacing, skip_bytes)
+        }
+    };
     let layout = RawLayout {
         size: size.to_array(),
         format: *format,
@@ -195,6 +206,8 @@ pub enum Contents {
         range: (f32, f32),
         /// Samples that are NaN or infinite.
         non_finite: u64,
+        /// How often each value occurs.
+        histogram: sources::Histogram,
     },
 }
 
@@ -209,7 +222,11 @@ pub fn contents(world: &mut World) -> Vec<(String, Contents)> {
         if let Some(LoadedVolume { data, .. }) = volume {
             let (size, format) = (data.size, data.samples.format());
             let (spacing, range, non_finite) = (data.spacing, data.range, data.non_finite);
-            all.push((name.to_string(), Contents::Volume { size, format, spacing, range, non_finite }));
+            let histogram = data.histogram.clone();
+            all.push((
+                name.to_string(),
+                Contents::Volume { size, format, spacing, range, non_finite, histogram },
+            ));
         }
     }
     all.sort_by(|a, b| a.0.cmp(&b.0));

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use support::Studio;
 use tyndall::render;
 use tyndall::scene::Severity;
+use tyndall::sources::{Endian, RawLayout, SampleFormat, read_raw, read_volume};
 
 fn data(path: &str) -> PathBuf {
     Path::new(&std::env::var("TYNDALL_DATA").unwrap()).join(path)
@@ -201,4 +202,185 @@ fn the_axes_of_a_volume_are_those_of_the_scene() {
         right >= 70 && left < 40 && top > 40,
         "the bar along z goes from column {right} to {left}, at row {top}"
     );
+}
+
+/// What must become of a file that says itself what it holds.
+#[derive(Debug)]
+enum Outcome {
+    /// Size, spacing in mm, format, range, and parts of the notes.
+    Volume([u32; 3], [f32; 3], &'static str, (f32, f32), &'static [&'static str]),
+    /// A part of the error.
+    Refused(&'static str),
+}
+use Outcome::{Refused, Volume};
+
+/// Every file of `volumes/formats` and the NRRD files of `volumes/odd`.
+const FORMATS: &[(&str, Outcome)] = &[
+    ("formats/HeadMRVolume.mhd", Volume([48, 62, 42], [4.0, 4.0, 4.0], "U8", (0.0, 255.0), &[])),
+    ("formats/HeadMRVolume.raw", Refused("name their header,")),
+    (
+        "formats/dicom/CT_small.dcm",
+        Volume(
+            [128, 128, 1],
+            [0.661468, 0.661468, 5.0],
+            "I16",
+            (-896.0, 1167.0),
+            &["left, posterior, superior"],
+        ),
+    ),
+    (
+        "formats/dicom/MR_small.dcm",
+        Volume([64, 64, 1], [0.3125, 0.3125, 0.8], "I16", (127.0, 2145.0), &["left, posterior, superior"]),
+    ),
+    (
+        "formats/dicom/MR_small_RLE.dcm",
+        Volume([64, 64, 1], [0.3125, 0.3125, 0.8], "I16", (127.0, 2145.0), &["left, posterior, superior"]),
+    ),
+    (
+        "formats/dicom/MR_small_bigendian.dcm",
+        Volume([64, 64, 1], [0.3125, 0.3125, 0.8], "I16", (127.0, 2145.0), &["left, posterior, superior"]),
+    ),
+    ("formats/frogtissue.mhd", Volume([500, 470, 136], [1.0, 1.0, 1.5], "U8", (0.0, 29.0), &[])),
+    ("formats/frogtissue.zraw", Refused("name their header,")),
+    ("formats/heptane.nii.gz", Volume([302, 302, 302], [1.0, 1.0, 1.0], "U8", (0.0, 255.0), &[])),
+    ("formats/ironProt.vtk", Volume([68, 68, 68], [1.0, 1.0, 1.0], "U8", (0.0, 255.0), &[])),
+    ("formats/mni152_t1.nii.gz", Volume([197, 233, 189], [1.0, 1.0, 1.0], "U8", (0.0, 255.0), &[])),
+    ("formats/neghip.slc", Refused("SLC volumes are not read; convert it to NRRD")),
+    ("formats/niftirs/27_float32.nii", Volume([3, 3, 3], [1.0, 1.0, 1.0], "F32", (0.0, 26.0), &[])),
+    ("formats/niftirs/27_float64.nii", Volume([3, 3, 3], [1.0, 1.0, 1.0], "F32", (0.0, 26.0), &[])),
+    ("formats/niftirs/27_int16.nii", Volume([3, 3, 3], [1.0, 1.0, 1.0], "I16", (0.0, 26.0), &[])),
+    ("formats/niftirs/27_int32.nii", Volume([3, 3, 3], [1.0, 1.0, 1.0], "U8", (0.0, 26.0), &[])),
+    ("formats/niftirs/27_int64.nii", Volume([3, 3, 3], [1.0, 1.0, 1.0], "U8", (0.0, 26.0), &[])),
+    ("formats/niftirs/27_int8.nii", Volume([3, 3, 3], [1.0, 1.0, 1.0], "I8", (0.0, 26.0), &[])),
+    ("formats/niftirs/27_uint16.nii", Volume([3, 3, 3], [1.0, 1.0, 1.0], "U16", (0.0, 26.0), &[])),
+    ("formats/niftirs/27_uint32.nii", Volume([3, 3, 3], [1.0, 1.0, 1.0], "U8", (0.0, 26.0), &[])),
+    ("formats/niftirs/27_uint64.nii", Volume([3, 3, 3], [1.0, 1.0, 1.0], "U8", (0.0, 26.0), &[])),
+    ("formats/niftirs/27_uint8.nii", Volume([3, 3, 3], [1.0, 1.0, 1.0], "U8", (0.0, 26.0), &[])),
+    (
+        "formats/niftirs/avg152T1_LR_nifti.nii.gz",
+        Volume([91, 109, 91], [2.0, 2.0, 2.0], "U8", (0.0, 255.0), &["left, anterior, superior"]),
+    ),
+    ("formats/niftirs/f32.nii.gz", Volume([11, 11, 11], [1.0, 1.0, 1.0], "F32", (0.0, 1.0), &[])),
+    ("formats/niftirs/minimal.nii", Volume([64, 64, 10], [3.0, 3.0, 3.0], "U8", (0.0, 63.0), &[])),
+    ("formats/niftirs/minimal.nii.gz", Volume([64, 64, 10], [3.0, 3.0, 3.0], "U8", (0.0, 63.0), &[])),
+    ("formats/nrrdjl/bswap.nrrd", Volume([2, 2, 1], [1.0, 1.0, 1.0], "U16", (1.0, 255.0), &[])),
+    (
+        "formats/nrrdjl/small.nrrd",
+        Volume([10, 10, 10], [1.0, 1.0, 1.0], "F32", (34.49416, 173.21498), &["left, posterior, superior"]),
+    ),
+    ("formats/nrrdjl/small.raw", Refused("bare samples do not say what they are; write `Volume: Raw(")),
+    (
+        "formats/nrrdjl/smallgz.nrrd",
+        Volume([10, 10, 10], [1.0, 1.0, 1.0], "F32", (34.49416, 173.21498), &["left, posterior, superior"]),
+    ),
+    (
+        "formats/nrrdjl/test_helix.nrrd",
+        Refused("7 numbers at each place (axis 1, 3D-masked-symmetric-matrix); choose one: `unu slice"),
+    ),
+    (
+        "formats/pynrrd/BallBinary30x30x30.nhdr",
+        Volume([30, 30, 30], [1.0, 1.0, 1.0], "I16", (0.0, 257.0), &["left, posterior, superior"]),
+    ),
+    (
+        "formats/pynrrd/BallBinary30x30x30.nrrd",
+        Volume([30, 30, 30], [1.0, 1.0, 1.0], "I16", (0.0, 257.0), &["left, posterior, superior"]),
+    ),
+    ("formats/pynrrd/BallBinary30x30x30.raw", Refused("name their header,")),
+    (
+        "formats/pynrrd/BallBinary30x30x30_gz.nrrd",
+        Volume([30, 30, 30], [1.0, 1.0, 1.0], "I16", (0.0, 257.0), &["left, posterior, superior"]),
+    ),
+    ("formats/pynrrd/test1d_ascii.nrrd", Volume([27, 1, 1], [1.0458, 1.0, 1.0], "U8", (1.0, 27.0), &[])),
+    (
+        "formats/pynrrd/test_simple4d_raw.nrrd",
+        Volume(
+            [1, 1, 1],
+            [1.5, 1.5, 1.0],
+            "F32",
+            (0.76903427, 0.76903427),
+            &["1 of 1 64-bit floats are rounded"],
+        ),
+    ),
+    (
+        "formats/stroke_FLAIR.nii.gz",
+        Volume([124, 160, 140], [1.0, 1.0, 1.0], "U8", (0.0, 255.0), &["up to 19.0° off the world's"]),
+    ),
+    (
+        "formats/stroke_T1.nii.gz",
+        Volume([124, 160, 140], [1.0, 1.0, 1.0], "U8", (0.0, 252.0), &["up to 19.0° off the world's"]),
+    ),
+    ("formats/tooth.nhdr", Volume([103, 94, 161], [1.0, 1.0, 1.0], "U16", (0.0, 1300.0), &[])),
+    ("odd/hex_encoding.nrrd", Volume([4, 4, 4], [1.0, 1.0, 1.0], "U8", (0.0, 63.0), &[])),
+    ("odd/liar_sizes.nrrd", Refused("64 x 64 x 64 voxels of 1 byte need 262144 (229376 fewer")),
+    (
+        "odd/missing_endian_u16.nrrd",
+        Refused("endian: it is missing from the header; add a line `endian: little`"),
+    ),
+];
+
+#[test]
+#[cfg_attr(not(tyndall_data), ignore = "needs TYNDALL_DATA")]
+fn every_format_loads_or_says_why_not() {
+    let folders = ["formats", "formats/dicom", "formats/niftirs", "formats/nrrdjl", "formats/pynrrd", "odd"];
+    let mut all: Vec<String> = Vec::new();
+    for folder in folders {
+        let ending = if folder == "odd" { ".nrrd" } else { "" };
+        let found = files(&format!("volumes/{folder}"), ending).into_iter().filter(|path| path.is_file());
+        all.extend(found.map(|path| format!("{folder}/{}", path.file_name().unwrap().to_string_lossy())));
+    }
+    all.sort();
+    let mut listed: Vec<&str> = FORMATS.iter().map(|(name, _)| *name).collect();
+    listed.sort_unstable();
+    assert_eq!(all, listed);
+    let mut wrong = Vec::new();
+    for (name, expected) in FORMATS {
+        let read = read_volume(&data("volumes").join(name));
+        let as_expected = match (&read, expected) {
+            (Ok(volume), Volume(size, spacing, format, range, notes)) => {
+                volume.size == *size
+                    && volume.spacing.abs_diff_eq(glam::Vec3::from(*spacing), 1e-5)
+                    && volume.samples.format().to_string() == *format
+                    && (volume.range.0 - range.0).abs().max((volume.range.1 - range.1).abs())
+                        <= 1e-4 * range.1.abs()
+                    && volume.notes.len() == notes.len()
+                    && notes.iter().zip(&volume.notes).all(|(part, note)| note.contains(part))
+                    && volume.histogram.bins.iter().sum::<u64>() + volume.non_finite
+                        == volume.samples.len() as u64
+            }
+            (Err(error), Refused(part)) => {
+                error.to_string().contains(part) && error.to_string().contains(name)
+            }
+            _ => false,
+        };
+        if !as_expected {
+            let read = read.map(|volume| {
+                let format = volume.samples.format();
+                (volume.size, volume.spacing, format, volume.range, volume.non_finite, volume.notes)
+            });
+            wrong.push(format!("{name}: {read:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The same voxels through a header and as bare samples.
+#[test]
+#[cfg_attr(not(tyndall_data), ignore = "needs TYNDALL_DATA")]
+fn headers_give_what_their_bare_samples_give() {
+    let layout =
+        |size, format, endian| RawLayout { size, format, endian, spacing: glam::Vec3::ONE, skip_bytes: 0 };
+    let volumes = data("volumes");
+    let tooth = read_volume(&volumes.join("formats/tooth.nhdr")).unwrap();
+    let bare = layout([103, 94, 161], SampleFormat::U16, Endian::Big);
+    assert_eq!(tooth, read_raw(&volumes.join("tooth_103x94x161_uint16_be.raw.gz"), &bare).unwrap());
+    let head = read_volume(&volumes.join("formats/HeadMRVolume.mhd")).unwrap();
+    let bare = layout([48, 62, 42], SampleFormat::U8, Endian::Little);
+    assert_eq!(head.samples, read_raw(&volumes.join("formats/HeadMRVolume.raw"), &bare).unwrap().samples);
+    let pynrrd = |name: &str| read_volume(&volumes.join("formats/pynrrd").join(name)).unwrap();
+    let ball = pynrrd("BallBinary30x30x30.nrrd");
+    assert_eq!(ball, pynrrd("BallBinary30x30x30.nhdr"));
+    assert_eq!(ball, pynrrd("BallBinary30x30x30_gz.nrrd"));
+    let dicom = |name: &str| read_volume(&volumes.join("formats/dicom").join(name)).unwrap();
+    assert_eq!(dicom("MR_small.dcm"), dicom("MR_small_RLE.dcm"));
+    assert_eq!(dicom("MR_small.dcm").samples, dicom("MR_small_bigendian.dcm").samples);
 }

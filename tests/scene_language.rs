@@ -153,7 +153,7 @@ fn every_field_of_every_component_can_be_written() {
     assert_eq!(get::<Mesh>(&app, "plane"), Mesh::Plane { size: Vec2::new(4.0, 5.0) });
     assert_eq!(get::<Mesh>(&app, "room"), Mesh::CornellBox);
     assert_eq!(get::<Phong>(&app, "room").shininess, 200.0);
-    let Volume::Raw { size, format, endian, spacing, skip_bytes, .. } = get(&app, "bone");
+    let Volume::Raw { size, format, endian, spacing, skip_bytes, .. } = get(&app, "bone") else { panic!() };
     assert_eq!((size, format, endian), (UVec3::new(3, 4, 5), SampleFormat::I16, Endian::Big));
     assert_eq!((spacing, skip_bytes), (Vec3::new(0.5, 0.5, 1.0), 352));
     let function: TransferFunction = get(&app, "bone");
@@ -493,7 +493,7 @@ fn includes_merge_and_paths_start_at_the_file_that_names_them() {
     let parts = files.0.path().join("parts").canonicalize().unwrap();
     let Mesh::File(path) = get(&app, "a") else { panic!() };
     assert_eq!(path.path().parent().unwrap().canonicalize().unwrap(), parts);
-    let Volume::Raw { path, .. } = get(&app, "b");
+    let Volume::Raw { path, .. } = get(&app, "b") else { panic!() };
     assert!(path.path().ends_with("parts/data/b.raw"), "{path:?}");
     assert_eq!(get::<TransferFunction>(&app, "bone").entries, 64);
 }

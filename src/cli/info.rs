@@ -6,8 +6,12 @@ use super::render::gpu_description;
 use crate::gpu::{Gpu, GpuOptions};
 use crate::loading::{Contents, contents};
 use crate::render;
+use crate::sources::Histogram;
 use bevy_app::App;
 use serde_json::{Value, json};
+
+/// Of the histogram's 256, so that it fits a terminal's line.
+const BINS_PER_COLUMN: usize = 4;
 
 pub(super) fn run(app: &mut App, arguments: &InfoArguments) -> Result<(), Failure> {
     let facts = match &arguments.scene {
@@ -21,7 +25,7 @@ pub(super) fn run(app: &mut App, arguments: &InfoArguments) -> Result<(), Failur
             let entities = contents(app.world_mut());
             entities
                 .iter()
-                .map(|(name, contents)| (name.clone(), describe(contents)))
+                .map(|(name, contents)| (name.clone(), describe(contents, arguments.json)))
                 .collect::<serde_json::Map<_, _>>()
                 .into()
         }
@@ -50,7 +54,7 @@ fn machine() -> Result<Value, Failure> {
     }))
 }
 
-fn describe(contents: &Contents) -> Value {
+fn describe(contents: &Contents, for_machines: bool) -> Value {
     match contents {
         Contents::Mesh(mesh) => json!({
             "vertices": mesh.vertices,
@@ -61,14 +65,37 @@ fn describe(contents: &Contents) -> Value {
             "components": mesh.components,
             "bounds": mesh.bounds.map(|(low, high)| [low.to_array(), high.to_array()]),
         }),
-        Contents::Volume { size, format, spacing, range, non_finite } => json!({
+        Contents::Volume { size, format, spacing, range, non_finite, histogram } => json!({
             "size": size,
             "format": format!("{format:?}"),
             "spacing mm": spacing.to_array(),
             "range": [range.0, range.1],
             "non-finite": non_finite,
+            "histogram": if for_machines {
+                json!({ "range": [histogram.range.0, histogram.range.1], "bins": histogram.bins })
+            } else {
+                sparkline(histogram).into()
+            },
         }),
     }
+}
+
+/// A histogram as a line of bars between its ends; their heights are logarithms of the counts, as one value often outnumbers the others.
+fn sparkline(histogram: &Histogram) -> String {
+    const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+    let columns: Vec<u64> = histogram
+        .bins
+        .chunks(BINS_PER_COLUMN)
+        .map(|bins| bins.iter().copied().fold(0, u64::saturating_add))
+        .collect();
+    let height = |samples: u64| ((samples as f64) + 1.0).ln();
+    let greatest = columns.iter().map(|&samples| height(samples)).fold(0.0, f64::max);
+    let bar = |&samples: &u64| match samples {
+        0 => ' ',
+        samples => BARS[((height(samples) / greatest * 8.0).ceil() as usize).clamp(1, 8) - 1],
+    };
+    let bars: String = columns.iter().map(bar).collect();
+    format!("{} |{bars}| {} (log)", histogram.range.0, histogram.range.1)
 }
 
 /// Nested facts as indented lines.

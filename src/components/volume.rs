@@ -9,6 +9,17 @@ pub use crate::sources::{Endian, SampleFormat};
 
 /// A scalar field on a regular grid, centred on the entity's origin.
 ///
+/// | variant | what it reads |
+/// |---|---|
+/// | `File(path)` | a file that says itself what it holds: NRRD, NIfTI, MetaImage, DICOM (one file, or a folder with a series), legacy VTK structured points |
+/// | `Raw(…)` | bare samples, described by its fields |
+///
+/// Which format a `File` is, its content says. Its spacing is in mm. Where it says how it lies in a patient, as NIfTI and DICOM do,
+/// +x is right, +y anterior and +z superior; other files keep their own axes. Axes are only exchanged and reversed, never resampled,
+/// and a note tells of it, as of whatever else is not drawn as it is written. 8- and 16-bit integers and 32-bit floats keep their type;
+/// wider or scaled integers become the first of `U8`, `I8`, `U16`, `I16` that holds every value exactly, or else `F32`; scaled and
+/// 64-bit floats become `F32`.
+///
 /// | field of `Raw` | type | unit | range | default |
 /// |---|---|---|---|---|
 /// | `path` | file; a name that ends in `.gz` is unpacked | – | – | – |
@@ -22,12 +33,15 @@ pub use crate::sources::{Endian, SampleFormat};
 /// in the half voxel at the border it is constant. Samples that are not finite are counted, reported and drawn as transparent.
 ///
 /// ```ron
+/// Volume: File("head.nii.gz")
 /// Volume: Raw(path: "../assets/bonsai.raw", size: (256, 256, 256), format: U8, spacing: (0.08, 0.08, 0.08))
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, PartialEq)]
 #[require(Transform, Placement, TransferFunction, VolumeLighting, RayCast)]
 pub enum Volume {
+    /// Read from a file, or a folder of DICOM slices, that says itself what it holds.
+    File(AssetPath),
     /// Bare samples, as they stand in memory.
     Raw {
         /// The file.

@@ -76,6 +76,26 @@ pub enum SourceError {
         /// What was expected, what was found, how to mend it.
         problem: String,
     },
+    /// A field of a header that cannot be understood.
+    #[error("{path}: {field}: {problem}")]
+    Field {
+        /// The path asked for.
+        path: PathBuf,
+        /// The field, by the name its format gives it.
+        field: String,
+        /// What was expected, what was found, how to mend it.
+        problem: String,
+    },
+    /// A file that is whole, but not of a kind that is read.
+    #[error("{path}: {found}; {mend}")]
+    Unsupported {
+        /// The path asked for.
+        path: PathBuf,
+        /// What it is or has that is not read.
+        found: String,
+        /// What to do about it.
+        mend: String,
+    },
     /// A mesh file without a surface.
     #[error("{path}: no triangles: found {found}; export the mesh with its faces")]
     NoTriangles {
@@ -106,9 +126,9 @@ pub enum SourceError {
         /// What to do about it.
         mend: String,
     },
-    /// A gzip file that cannot be unpacked.
+    /// A packed file that cannot be unpacked.
     #[error("{path}: {problem} after {unpacked} unpacked bytes; {mend}")]
-    Gzip {
+    Packed {
         /// The path asked for.
         path: PathBuf,
         /// How many bytes came out before.

@@ -2,7 +2,7 @@
 
 use std::{
     fs::{self, File},
-    io,
+    io::{self, Read, Seek, SeekFrom},
     path::Path,
 };
 
@@ -46,4 +46,12 @@ fn nearest_name(path: &Path) -> Option<String> {
         .filter(|(likeness, _)| *likeness >= NEAR_ENOUGH)
         .max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(&a.1)))
         .map(|(_, name)| name)
+}
+
+/// Whether a file begins with these bytes; it is back at its beginning afterwards.
+pub(super) fn begins_with(path: &Path, file: &mut File, magic: &[u8]) -> Result<bool, SourceError> {
+    let mut begins = Vec::new();
+    let read = (&mut *file).take(magic.len() as u64).read_to_end(&mut begins);
+    read.and_then(|_| file.seek(SeekFrom::Start(0))).map_err(|cause| io_error(path, cause))?;
+    Ok(begins == magic)
 }

@@ -3,19 +3,31 @@
 //! Nothing here knows a scene, an entity or a GPU: a path goes in, plain vectors or a [`SourceError`] come out. Whatever the
 //! file holds, a reader neither panics nor allocates more than a bounded multiple of the file's length.
 
+mod dicom;
 pub mod error;
 mod file;
+mod grid;
 pub mod mesh;
+mod meta_image;
+mod nifti;
+mod nrrd;
 pub mod obj;
+mod pieces;
 pub mod procedural;
 pub mod raw;
+pub mod self_describing;
+mod stored;
+mod stream;
+mod text;
 pub mod volume;
+mod vtk;
 
 pub use error::{LayoutError, SourceError};
 pub use mesh::{MeshData, MeshStatistics};
 pub use obj::read_obj;
 pub use raw::{RawLayout, read_raw};
-pub use volume::{BrickRanges, Endian, SampleFormat, Samples, VolumeData};
+pub use self_describing::read_volume;
+pub use volume::{BrickRanges, Endian, Histogram, SampleFormat, Samples, VolumeData};
 
 #[cfg(test)]
 mod tests;

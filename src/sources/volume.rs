@@ -1,6 +1,7 @@
-//! Regular grids of samples, and the range of values in each brick of them.
+//! Regular grids of samples, the range of values in each brick of them, and how often each value occurs.
 
 mod bricks;
+mod histogram;
 
 use std::fmt;
 
@@ -8,6 +9,7 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::Vec3;
 
 pub use bricks::BrickRanges;
+pub use histogram::Histogram;
 
 use super::LayoutError;
 
@@ -170,10 +172,14 @@ pub struct VolumeData {
     pub non_finite: u64,
     /// The range of the finite samples in each brick.
     pub bricks: BrickRanges,
+    /// How often each value occurs.
+    pub histogram: Histogram,
+    /// What a person should know about how the file was read; empty where there is nothing to say.
+    pub notes: Vec<String>,
 }
 
 impl VolumeData {
-    /// A volume of these samples; looks at each once to find their ranges.
+    /// A volume of these samples; looks at each twice, to find their ranges and to count their values.
     ///
     /// # Errors
     ///
@@ -181,13 +187,14 @@ impl VolumeData {
     /// do not fill the size.
     pub fn new(size: [u32; 3], spacing: Vec3, samples: Samples) -> Result<Self, LayoutError> {
         check_spacing(spacing)?;
-        let bytes = checked_bytes(size, samples.format())?;
+        let bytes = checked_bytes(size, samples.format().bytes())?;
         if samples.as_bytes().len() as u64 != bytes {
             return Err(LayoutError::SampleCount { size, samples: samples.len() });
         }
         let (bricks, non_finite) = bricks::ranges_of(&samples, size);
         let range = bricks.range().unwrap_or((0.0, 0.0));
-        Ok(Self { size, spacing, samples, range, non_finite, bricks })
+        let histogram = Histogram::of(&samples, range);
+        Ok(Self { size, spacing, samples, range, non_finite, bricks, histogram, notes: Vec::new() })
     }
 
     /// The sample of voxel (x, y, z), unscaled; `None` outside.
@@ -202,11 +209,10 @@ impl VolumeData {
 }
 
 /// Bytes of a volume of this size, or why it cannot be.
-pub(super) fn checked_bytes(size: [u32; 3], format: SampleFormat) -> Result<u64, LayoutError> {
+pub(super) fn checked_bytes(size: [u32; 3], bytes_per_voxel: u64) -> Result<u64, LayoutError> {
     if size.contains(&0) {
         return Err(LayoutError::EmptySide { size });
     }
-    let bytes_per_voxel = format.bytes();
     size.iter()
         .try_fold(bytes_per_voxel, |bytes, &side| bytes.checked_mul(side.into()))
         .filter(|&bytes| bytes <= MAX_VOLUME_BYTES)
