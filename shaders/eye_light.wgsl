@@ -7,12 +7,13 @@
 //
 // and from slice to slice the cone spreads as in `cells.wgsl`. The way is that of the middle of the volume to the eye.
 //
-// reads  light cells, fluence, light volumes
+// reads  light cells, fluence, light volumes, shadows of meshes
 // writes radiance towards the eye, as a share of `scale`
 
 #import cells
 #import two_stream
 #import light_volumes
+#import shadows
 
 struct EyeSweep {
     // Cells across that the way moves from slice to slice.
@@ -54,8 +55,8 @@ fn sweep(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     let beam = two_stream_beam(cell.rgb, sweep_of.g);
     var arriving = (1.0 - sweep_of.g) / 12.566370614359172 * eye.scale * textureLoad(fluence, at, 0).rgb;
     for (var i = 0u; i < eye.lights; i += 1u) {
-        let depth = light_depth(i, place_of(vec2f(across) + 0.5, f32(here) + 0.5));
-        arriving += sources[i].rgb * exp(-depth * beam);
+        let place = place_of(vec2f(across) + 0.5, f32(here) + 0.5);
+        arriving += sources[i].rgb * light_seen(i, place) * exp(-light_depth(i, place) * beam);
     }
     let lost = 1.0 - cell.rgb * sweep_of.g;
     let source = cell.rgb * arriving / max(lost, vec3f(1e-6));

@@ -5,13 +5,10 @@
 // everywhere it is exact at whatever resolution. tau is the sum over segments of at most a voxel along which the value changes evenly,
 // by the integral of the transfer function: exact for whatever function, of second order for a field that is not linear.
 //
-// Meshes in the way add an optical depth behind which nothing is left.
-//
-// reads  volume texture, extinction table, brick distances, shadow map
+// reads  volume texture, extinction table, brick distances
 // writes r32float: mean sigma_t times the length of a slice
 
 #import classified
-#import shadowed
 
 struct Columns {
     // Takes (across, across, slice), in cells from the corner of the volume, to the texture of the volume.
@@ -31,55 +28,9 @@ struct Segments {
     count: u32,
 }
 
-// What meshes keep from the volume.
-struct Shadow {
-    // From the texture of the volume to the light's view: texels from the lower left, and height towards the light.
-    view_from_texture: mat4x4f,
-}
-
 @group(0) @binding(4) var<uniform> columns: Columns;
 @group(0) @binding(5) var light_volume: texture_storage_3d<r32float, write>;
-@group(0) @binding(6) var<uniform> shadow: Shadow;
-// As `gbuffer.wgsl` writes it.
-@group(0) @binding(7) var shadow_map: texture_2d<f32>;
-@group(0) @binding(8) var<uniform> segments: Segments;
-
-// The optical depth of a mesh that is in the way, and how soon behind the face at which light enters it counts in full, in slices.
-const OPAQUE = 16.0;
-const SOONEST = 0.05;
-
-// How high up the light is met, seen from a place; far below where it is not.
-fn blocked_at(place: vec3f) -> f32 {
-    let at = (shadow.view_from_texture * vec4f(place, 1.0)).xy;
-    let size = vec2i(textureDimensions(shadow_map));
-    let texel = vec2i(i32(floor(at.x)), size.y - 1 - i32(floor(at.y)));
-    if any(texel < vec2i(0)) || any(texel >= size) {
-        return -1e30;
-    }
-    let found = textureLoad(shadow_map, texel, 0);
-    return select(-1e30, found.w, any(found.xyz != vec3f(0.0)));
-}
-
-// The same at four places that share the area of a column, since the edge of a shadow may pass between.
-fn blocked(across: vec2f, slice: f32) -> vec4f {
-    return vec4f(
-        blocked_at(place_of(across + vec2f(-0.25, -0.25), slice)),
-        blocked_at(place_of(across + vec2f(0.25, -0.25), slice)),
-        blocked_at(place_of(across + vec2f(-0.25, 0.25), slice)),
-        blocked_at(place_of(across + vec2f(0.25, 0.25), slice)),
-    );
-}
-
-// Optical depth of the meshes between a place and the light.
-fn shade(blockers: vec4f, place: vec3f) -> f32 {
-    let height = (shadow.view_from_texture * vec4f(place, 1.0)).z;
-    let visible = dot(vec4f(0.25), select(vec4f(0.0), vec4f(1.0), blockers <= vec4f(height)));
-    return min(-log(max(visible, 1e-7)), OPAQUE);
-}
-
-fn place_of(across: vec2f, slice: f32) -> vec3f {
-    return (columns.texture_from_cells * vec4f(across, slice, 1.0)).xyz;
-}
+@group(0) @binding(6) var<uniform> segments: Segments;
 
 // The transfer function up to a place in the table: `Cumulative` in `src/optics/transfer.rs`.
 struct Passed {
@@ -126,7 +77,6 @@ struct March {
     // The slice at which it has come in through a face across the slices, and how much of the way to it was inside.
     entry: f32,
     part: f32,
-    blockers: vec4f,
 }
 
 // What `added` more on the way to a slice makes of a column, and its texel.
@@ -135,10 +85,7 @@ fn reach_slice(march: ptr<function, March>, added: f32, slice: f32, texel: vec2u
     // What it met outside does not count.
     (*march).depth = select((*march).depth + added, added * (*march).part, comes_in);
     (*march).slices = select((*march).slices + 1.0, (*march).part, comes_in);
-    var mean = (*march).depth / (*march).slices;
-    if HAS_SHADOW {
-        mean += shade((*march).blockers, (*march).start + (*march).step * slice) / max((*march).slices, SOONEST);
-    }
+    let mean = (*march).depth / (*march).slices;
     textureStore(light_volume, vec3u(texel, u32(slice)), vec4f(mean, 0.0, 0.0, 0.0));
 }
 
@@ -210,15 +157,9 @@ fn sweep(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
         march.slices = 0.0;
         march.entry = select(-1.0, ceil(entry), entry > slice);
         march.part = max(ceil(entry) - entry, 1e-6);
-        if HAS_SHADOW {
-            march.blockers = blocked(across + slope * slice, slice);
-        }
         // Where nothing is passed yet the mean is what is here.
         let place = march.start + march.step * slice;
-        var mean = passed_at(place).sigma_t * segments.length * f32(segments.count);
-        if HAS_SHADOW {
-            mean += shade(march.blockers, place) / SOONEST;
-        }
+        let mean = passed_at(place).sigma_t * segments.length * f32(segments.count);
         textureStore(light_volume, vec3u(texel, u32(slice)), vec4f(mean, 0.0, 0.0, 0.0));
         follow(&march, slice, end, texel);
         slice = end + 1.0;

@@ -16,6 +16,7 @@
 #import volumes
 #import light_volumes
 #import scattered
+#import shadows
 #import classify
 
 struct VolumeInstance {
@@ -199,9 +200,10 @@ fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, cent
     for (var i = 0u; i < frame.light_count; i += 1u) {
         let depth = light_depth(volume.first_sweep + i, place);
         let phase = henyey_greenstein(-lights[i].to_light, -ray.direction, volume.g);
-        arriving += lights[i].irradiance * exp(-depth * beam) * phase;
+        let light = lights[i].irradiance * light_seen(volume.first_sweep + i, place);
+        arriving += light * exp(-depth * beam) * phase;
         if volume.specular > 0.0 {
-            specular += lights[i].irradiance * exp(-depth) / PI * highlight(normal, lights[i].to_light, volume.shininess, ray);
+            specular += light * exp(-depth) / PI * highlight(normal, lights[i].to_light, volume.shininess, ray);
         }
     }
     if is_often {

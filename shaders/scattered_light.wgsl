@@ -1,12 +1,13 @@
 // Light that was scattered before, by a sweep along an axis and back: two streams in each column of cells, exact but for two directions
 // standing for all, and light that spreads across the axis from slice to slice.
 //
-// reads  light cells, the light volume
+// reads  light cells, the light volume, the shadow of meshes
 // writes fluence and flux, summed over the axes, of a light of irradiance 1
 
 #import cells
 #import two_stream
 #import light_volumes
+#import shadows
 
 // For each cell: what comes down to it, 1 less the reflectance of all before it, what it sends back of the light itself.
 @group(0) @binding(4) var<storage, read_write> stacks: array<vec4f>;
@@ -18,7 +19,8 @@ fn beam_at(across: vec2u, along: u32, beam: vec3f) -> vec3f {
     var sum = vec3f(0.0);
     for (var i = 0u; i < 4u; i += 1u) {
         let at = vec2f(across) + 0.25 + 0.5 * vec2f(f32(i & 1u), f32(i >> 1u));
-        sum += 0.25 * exp(-light_depth(0u, place_of(at, f32(along))) * beam);
+        let place = place_of(at, f32(along));
+        sum += 0.25 * light_seen(0u, place) * exp(-light_depth(0u, place) * beam);
     }
     return sum;
 }

@@ -39,6 +39,7 @@ sources! {
     "scattered_radiosity" => "scattered_radiosity.wgsl",
     "scattered_texels" => "scattered_texels.wgsl",
     "scattering_texels" => "scattering_texels.wgsl",
+    "shadow" => "shared/shadow.wgsl",
     "summed_light" => "summed_light.wgsl",
     "surface" => "surface.wgsl",
     "sweep" => "shared/sweep.wgsl",

@@ -7,6 +7,7 @@ use super::light_cells::LightCells;
 use super::light_volume::{LightVolume, LightVolumes, lighting_in_force, lookup, scene_from_texture};
 use super::scattered_light::{AxisSweep, SliceUniform, slice_binding};
 use super::summed_light::SummedLight;
+use super::volume_shadow::{self, VolumeShadow, VolumeShadows};
 use crate::components::{Placement, Projection, SceneSettings, Shading, VolumeLighting};
 use crate::gpu::{
     Gpu, GpuError, Grid, Kernel, KernelDescriptor, PassTimer, binding, storage, storage_of, uniform_buffer,
@@ -32,6 +33,7 @@ pub(crate) struct EyeLight {
 struct Recipe {
     cells: u64,
     light_volumes: Vec<u64>,
+    shadows: Vec<Option<u64>>,
     summed: u64,
     sweeps: Vec<AxisSweep>,
     slopes: Vec<Vec2>,
@@ -41,7 +43,8 @@ struct Recipe {
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct EyeSweeper {
-    kernels: Option<(usize, [Kernel; 2])>,
+    /// And for which lights, and which of them have a shadow, they are made.
+    kernels: Option<(Vec<bool>, [Kernel; 2])>,
 }
 
 mirror! {
@@ -71,6 +74,7 @@ type Volumes<'w, 's> = Query<
         &'static LightCells,
         &'static LightVolumes,
         &'static SummedLight,
+        Option<&'static VolumeShadows>,
         Option<&'static EyeLight>,
     ),
 >;
@@ -87,7 +91,9 @@ pub(crate) fn run(
         commands.entity(entity).remove::<EyeLight>();
     }
     let mut held = 0;
-    for (entity, loaded, placement, lighting, shading, cells, light_volumes, summed, kept) in &volumes {
+    for (entity, loaded, placement, lighting, shading, cells, light_volumes, summed, shadows, kept) in
+        &volumes
+    {
         let lighting = lighting_in_force(lighting, shading, &settings);
         let is_wanted =
             matches!(lighting, VolumeLighting::LightVolume { towards_eye: true, g, .. } if g > 0.0);
@@ -96,13 +102,24 @@ pub(crate) fn run(
             continue;
         }
         let scene_from_texture = scene_from_texture(loaded, placement, &settings);
-        let recipe = recipe(&lighting, scene_from_texture, &view, cells, light_volumes, summed);
+        let shadows: Vec<Option<&VolumeShadow>> =
+            light_volumes.0.iter().map(|volume| shadows?.of(volume.light)).collect();
+        let recipe = recipe(&lighting, scene_from_texture, &view, cells, (light_volumes, &shadows), summed);
         if let Some(kept) = kept.filter(|kept| kept.recipe == recipe) {
             held += kept.grid.bytes();
             continue;
         }
         let timing = timer.as_deref_mut();
-        match sweep(&gpu, &mut sweeper, cells, &light_volumes.0, summed, &recipe, timing, &mut report) {
+        match sweep(
+            &gpu,
+            &mut sweeper,
+            cells,
+            (&light_volumes.0, &shadows),
+            summed,
+            &recipe,
+            timing,
+            &mut report,
+        ) {
             Ok(grid) => {
                 held += grid.bytes();
                 commands.entity(entity).insert(EyeLight { grid, recipe });
@@ -118,7 +135,7 @@ fn recipe(
     scene_from_texture: DAffine3,
     view: &View,
     cells: &LightCells,
-    light_volumes: &LightVolumes,
+    (light_volumes, shadows): (&LightVolumes, &[Option<&VolumeShadow>]),
     summed: &SummedLight,
 ) -> Recipe {
     let towards = towards_eye(view, scene_from_texture.transform_point3(DVec3::splat(0.5)));
@@ -135,6 +152,7 @@ fn recipe(
     Recipe {
         cells: cells.version,
         light_volumes: light_volumes.0.iter().map(|volume| volume.version).collect(),
+        shadows: shadows.iter().map(|shadow| Some(shadow.as_ref()?.version)).collect(),
         summed: summed.version,
         slopes: sweeps.iter().map(|sweep| sweep.slope(direction).as_vec2()).collect(),
         sweeps,
@@ -157,7 +175,7 @@ fn sweep(
     gpu: &Gpu,
     sweeper: &mut EyeSweeper,
     cells: &LightCells,
-    light_volumes: &[LightVolume],
+    (light_volumes, shadows): (&[LightVolume], &[Option<&VolumeShadow>]),
     summed: &SummedLight,
     recipe: &Recipe,
     mut timer: Option<&mut PassTimer>,
@@ -166,7 +184,7 @@ fn sweep(
     let light_volumes: Vec<&LightVolume> = light_volumes.iter().collect();
     let size: UVec3 = cells.grid.size();
     let count = u64::from(size.element_product());
-    let [along, keep] = sweeper.kernels(gpu, light_volumes.len(), report)?;
+    let [along, keep] = sweeper.kernels(gpu, shadows.iter().map(Option::is_some).collect(), report)?;
     let grid = Grid::new(gpu, "eye light", size, FORMAT)?;
     let widest = recipe.sweeps.iter().map(AxisSweep::columns).max().unwrap_or(1);
     let faces = storage(gpu, "faces", 64 * u64::from(widest));
@@ -178,6 +196,8 @@ fn sweep(
     let indices: Vec<_> = (0..size.max_element()).map(|index| SliceUniform { index }).collect();
     let (slices, stride) = uniform_each(gpu, "slices", &indices);
     let (lookups, sampler) = (lookup::sweeps(gpu, &light_volumes), lookup::sampler(gpu));
+    let shadows: Vec<&VolumeShadow> = shadows.iter().flatten().copied().collect();
+    let shadow_places = volume_shadow::places(gpu, &shadows);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     for (index, (sweep, slope)) in recipe.sweeps.iter().zip(&recipe.slopes).enumerate() {
         let uniform = uniform_buffer(gpu, "scatter sweep", &sweep.uniform());
@@ -195,6 +215,7 @@ fn sweep(
             wgpu::BindingResource::TextureView(&grid.view),
         ];
         resources.extend(lookup::resources(&light_volumes, &lookups, &sampler));
+        resources.extend(volume_shadow::resources(&shadows, &shadow_places));
         let offsets = (0..sweep.slices()).map(|slice| slice * stride);
         let timing = timer.as_deref_mut().and_then(|timer| timer.time_compute("eye_light"));
         along.sweep(gpu, &mut encoder, &resources, sweep.columns(), offsets, timing);
@@ -208,20 +229,25 @@ fn sweep(
 }
 
 impl EyeSweeper {
-    /// The kernels, made for a number of lights.
-    fn kernels(&mut self, gpu: &Gpu, lights: usize, report: &mut Report) -> Result<&[Kernel; 2], GpuError> {
+    /// The kernels, made for lights of which some have a shadow.
+    fn kernels(
+        &mut self,
+        gpu: &Gpu,
+        shadowed: Vec<bool>,
+        report: &mut Report,
+    ) -> Result<&[Kernel; 2], GpuError> {
         let kernels = match self.kernels.take() {
-            Some((made_for, kernels)) if made_for == lights => kernels,
+            Some((made_for, kernels)) if made_for == shadowed => kernels,
             _ => {
                 report.pipelines.extend(["eye_light"; 2]);
-                [make(gpu, lights, "sweep")?, make(gpu, lights, "keep")?]
+                [make(gpu, &shadowed, "sweep")?, make(gpu, &shadowed, "keep")?]
             }
         };
-        Ok(&self.kernels.insert((lights, kernels)).1)
+        Ok(&self.kernels.insert((shadowed, kernels)).1)
     }
 }
 
-fn make(gpu: &Gpu, lights: usize, entry_point: &str) -> Result<Kernel, GpuError> {
+fn make(gpu: &Gpu, shadowed: &[bool], entry_point: &str) -> Result<Kernel, GpuError> {
     let filtering = lookup::filtering(gpu);
     let mut bindings = vec![
         binding::UNIFORM,
@@ -234,8 +260,13 @@ fn make(gpu: &Gpu, lights: usize, entry_point: &str) -> Result<Kernel, GpuError>
         binding::STORAGE,
         binding::grid_out(FORMAT),
     ];
-    bindings.extend(lookup::bindings(lights, filtering));
-    let generated = [lookup::light_volumes_module(lights, filtering, FIXED_BINDINGS)];
+    bindings.extend(lookup::bindings(shadowed.len(), filtering));
+    let first_shadow = bindings.len();
+    bindings.extend(volume_shadow::bindings(shadowed));
+    let generated = [
+        lookup::light_volumes_module(shadowed.len(), filtering, FIXED_BINDINGS),
+        volume_shadow::module(shadowed, first_shadow),
+    ];
     Kernel::new(
         gpu,
         &KernelDescriptor { name: "eye_light", generated: &generated, entry_point, bindings: &bindings },

@@ -6,13 +6,10 @@
 
 pub mod lookup;
 pub mod medium;
-pub mod shadow;
 pub mod sweep;
 pub mod through;
 
 use super::classify::Classified;
-use super::gbuffer::Gbuffer;
-use super::light_gbuffer::Meshes;
 use super::raycast::volumes_module;
 use super::upload::VolumeTexture;
 use crate::components::{DirectionalLight, Motion, Placement, SceneSettings, Shading, VolumeLighting};
@@ -27,7 +24,6 @@ use bevy_ecs::change_detection::Tick;
 use bevy_ecs::prelude::*;
 use glam::{DAffine3, DVec3, UVec3};
 use medium::Medium;
-use shadow::Shadow;
 use sweep::Sweep;
 
 /// The light volumes of a volume, one for each light, in the order of the lights.
@@ -57,13 +53,12 @@ struct Recipe {
     slice: f64,
     volume: wgpu::TextureView,
     classified: Tick,
-    shadow: Option<Shadow>,
 }
 
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct LightSweeper {
-    kernels: Vec<((Filtering, bool), Kernel)>,
+    kernels: Vec<(Filtering, Kernel)>,
     version: u64,
 }
 
@@ -80,7 +75,7 @@ mirror! {
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
 /// The bindings of the kernel in front of the volume.
-pub(crate) const FIRST_VOLUME: usize = 9;
+pub(crate) const FIRST_VOLUME: usize = 7;
 
 /// The lighting of a volume, with `Shading` taken into account.
 pub(crate) fn lighting_in_force(
@@ -112,9 +107,9 @@ type Volumes<'w, 's> = Query<
 pub(crate) fn run(
     mut commands: Commands,
     (gpu, settings): (Res<Gpu>, Res<SceneSettings>),
-    (mut volumes, meshes): (Volumes, Meshes),
+    mut volumes: Volumes,
     lights: Query<(Entity, &DirectionalLight, Option<&Motion>)>,
-    (mut sweeper, mut gbuffer): (ResMut<LightSweeper>, ResMut<Gbuffer>),
+    mut sweeper: ResMut<LightSweeper>,
     (mut timer, mut report, mut failure): (Option<ResMut<PassTimer>>, ResMut<Report>, ResMut<Failure>),
 ) {
     let lights = lights_in_order(&lights);
@@ -137,16 +132,8 @@ pub(crate) fn run(
             let direction = texture_from_scene.transform_vector3(-*to_light);
             let sweep = Sweep::new(cells, direction);
             let slice = scene_from_texture.transform_vector3(sweep.step()).length();
-            let shadow = settings
-                .meshes_shade_volumes
-                .then(|| Shadow::of(loaded, placement, &settings, *to_light, entity, &meshes));
-            let recipe = Recipe {
-                sweep,
-                slice,
-                volume: texture.view.clone(),
-                classified: classified.last_changed(),
-                shadow: shadow.flatten(),
-            };
+            let recipe =
+                Recipe { sweep, slice, volume: texture.view.clone(), classified: classified.last_changed() };
             let found =
                 old.iter().position(|volume| volume.light == *light).map(|index| old.swap_remove(index));
             if let Some(found) = found.filter(|found| found.recipe == recipe) {
@@ -155,8 +142,8 @@ pub(crate) fn run(
                 continue;
             }
             let timing = timer.as_mut().and_then(|timer| timer.time_compute("light_volume"));
-            let source = Source { loaded, classified: &classified, texture, texture_from_scene };
-            match make(&gpu, &mut sweeper, &mut gbuffer, &source, &recipe, timing, &mut report) {
+            let volume = (loaded, &*classified, texture);
+            match make(&gpu, &mut sweeper, volume, &recipe, timing, &mut report) {
                 Ok(grid) => {
                     sweeper.version += 1;
                     held += grid.bytes();
@@ -190,24 +177,14 @@ fn cells(gpu: &Gpu, size: [u32; 3], resolution: f32) -> UVec3 {
     UVec3::from(size.map(along))
 }
 
-/// The volume that a light volume is made of.
-struct Source<'a> {
-    loaded: &'a LoadedVolume,
-    classified: &'a Classified,
-    texture: &'a VolumeTexture,
-    texture_from_scene: DAffine3,
-}
-
 fn make(
     gpu: &Gpu,
     sweeper: &mut LightSweeper,
-    gbuffer: &mut Gbuffer,
-    source: &Source,
+    (loaded, classified, texture): (&LoadedVolume, &Classified, &VolumeTexture),
     recipe: &Recipe,
     timing: Option<wgpu::ComputePassTimestampWrites>,
     report: &mut Report,
 ) -> Result<Grid, GpuError> {
-    let Source { loaded, classified, texture, texture_from_scene } = source;
     let filtering = texture.format.filtering;
     let size = recipe.sweep.size();
     let grid = Grid::new(gpu, "light volume", size, FORMAT)?;
@@ -218,18 +195,14 @@ fn make(
     let columns = uniform_buffer(gpu, "columns", &recipe.sweep.columns());
     let segments = uniform_buffer(gpu, "segments", &segments);
     let medium = Medium::new(gpu, loaded, classified, texture, &classified.cumulative.entries);
-    let (shadow, shadow_map) =
-        shadow::draw(gpu, gbuffer, recipe.shadow.as_ref(), *texture_from_scene, report)?;
     let mut resources = medium.resources();
     resources.extend([
         columns.as_entire_binding(),
         wgpu::BindingResource::TextureView(&grid.view),
-        shadow.as_entire_binding(),
-        wgpu::BindingResource::TextureView(&shadow_map),
         segments.as_entire_binding(),
         wgpu::BindingResource::TextureView(&texture.view),
     ]);
-    let kernel = sweeper.kernel(gpu, filtering, recipe.shadow.is_some(), report)?;
+    let kernel = sweeper.kernel(gpu, filtering, report)?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     kernel.run(gpu, &mut encoder, &resources, Invocations::Count(size.x * size.y), timing);
     gpu.queue.submit([encoder.finish()]);
@@ -239,14 +212,8 @@ fn make(
 
 impl LightSweeper {
     /// The kernel, made when it is first asked for.
-    fn kernel(
-        &mut self,
-        gpu: &Gpu,
-        filtering: Filtering,
-        has_shadow: bool,
-        report: &mut Report,
-    ) -> Result<&Kernel, GpuError> {
-        let known = self.kernels.iter().position(|(made_for, _)| *made_for == (filtering, has_shadow));
+    fn kernel(&mut self, gpu: &Gpu, filtering: Filtering, report: &mut Report) -> Result<&Kernel, GpuError> {
+        let known = self.kernels.iter().position(|(made_for, _)| *made_for == filtering);
         let index = match known {
             Some(index) => index,
             None => {
@@ -255,24 +222,19 @@ impl LightSweeper {
                     binding::UNIFORM,
                     binding::GRID_OUT,
                     binding::UNIFORM,
-                    binding::TEXTURE,
-                    binding::UNIFORM,
                     binding::texture(wgpu::TextureViewDimension::D3, filtering == Filtering::Sampler),
                 ]);
                 let kernel = Kernel::new(
                     gpu,
                     &KernelDescriptor {
                         name: "light_volume",
-                        generated: &[
-                            ("volumes", volumes_module(&[filtering], false, FIRST_VOLUME)),
-                            shadow::module(has_shadow),
-                        ],
+                        generated: &[("volumes", volumes_module(&[filtering], false, FIRST_VOLUME))],
                         entry_point: "sweep",
                         bindings: &bindings,
                     },
                 )?;
                 report.pipelines.push("light_volume");
-                self.kernels.push(((filtering, has_shadow), kernel));
+                self.kernels.push((filtering, kernel));
                 self.kernels.len() - 1
             }
         };

@@ -22,6 +22,7 @@ pub mod surface;
 pub mod surface_points;
 pub mod tonemap;
 pub mod upload;
+pub mod volume_shadow;
 
 use crate::{Stage, gpu::Gpu};
 use bevy_app::{App, Plugin, Update};
@@ -45,12 +46,14 @@ impl Plugin for ScatteringPlugin {
             .init_resource::<light_cells::CellAverager>()
             .init_resource::<scattered_light::Scatterer>()
             .init_resource::<summed_light::Adder>()
-            .init_resource::<eye_light::EyeSweeper>();
+            .init_resource::<eye_light::EyeSweeper>()
+            .init_resource::<volume_shadow::VolumeShadowVersion>();
         app.add_systems(
             Update,
             (
                 (
                     light_volume::run,
+                    volume_shadow::run,
                     light_cells::run,
                     scattered_light::run,
                     summed_light::run,

@@ -13,6 +13,7 @@ use super::preintegrate::{PreintegratedPairs, preintegrate};
 use super::summed_light::SummedLight;
 use super::surface::Surface;
 use super::upload::{SENTINEL_THRESHOLD, VolumeTexture, VolumeUploadPlugin};
+use super::volume_shadow::{self, VolumeShadow, VolumeShadows};
 use crate::components::{
     Classification, Placement, RayCast as RayCastSettings, SceneSettings, Shading, VolumeLighting,
 };
@@ -70,8 +71,8 @@ struct Variant {
     light_capacity: usize,
     /// Whether any volume is lit by its gradient, which costs more than the rest together.
     any_lit: bool,
-    /// Light volumes of all volumes together.
-    light_volumes: usize,
+    /// For each light volume of all volumes together whether meshes shadow it.
+    light_volumes: Vec<bool>,
     /// Which volumes have scattered light.
     scattered: Vec<bool>,
 }
@@ -145,6 +146,7 @@ pub(crate) struct VolumeQuery {
     pairs: Option<&'static PreintegratedPairs>,
     voxels: Option<&'static ClassifiedVoxels>,
     light_volumes: Option<&'static LightVolumes>,
+    shadows: Option<&'static VolumeShadows>,
     summed: Option<&'static SummedLight>,
     eye_light: Option<&'static EyeLight>,
 }
@@ -168,8 +170,7 @@ fn run(
     let mut volumes: Vec<_> = volumes.iter().collect();
     volumes.sort_by_key(|volume| volume.entity);
     let limit = gpu.device.limits().max_sampled_textures_per_shader_stage - OTHER_TEXTURES;
-    let light_volumes = light_volumes(&volumes).len();
-    if let Some(problem) = too_many(&volumes, light_volumes, limit) {
+    if let Some(problem) = too_many(&volumes, limit) {
         problems.0.push(problem);
         return;
     }
@@ -187,11 +188,11 @@ fn run(
 }
 
 /// What is told where volumes and their light volumes are more textures than can be bound.
-fn too_many(volumes: &[VolumeData], light_volumes: usize, limit: u32) -> Option<Problem> {
+fn too_many(volumes: &[VolumeData], limit: u32) -> Option<Problem> {
     let classified =
         volumes.iter().filter(|volume| classification_of(volume) != Classification::Post).count();
     let scattered = 2 * volumes.iter().filter(|volume| volume.summed.is_some()).count();
-    let light = light_volumes + scattered;
+    let light = light_volumes(volumes).len() + shadows(volumes).iter().flatten().count() + scattered;
     if volumes.len() + light + classified <= limit as usize {
         return None;
     }
@@ -227,7 +228,7 @@ fn prepare(
 ) -> Result<(), GpuError> {
     let filtering = volumes.iter().map(|volume| volume.texture.format.filtering).collect();
     let any_lit = volumes.iter().any(|volume| !matches!(volume.lighting, VolumeLighting::EmissionAbsorption));
-    let light_volumes = light_volumes(volumes).len();
+    let light_volumes = shadows(volumes).iter().map(Option::is_some).collect();
     let scattered = volumes.iter().map(|volume| volume.summed.is_some()).collect();
     let classifications = volumes.iter().map(classification_of).collect();
     let variant = Variant { filtering, classifications, light_capacity, any_lit, light_volumes, scattered };
@@ -275,15 +276,23 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
         .filtering
         .iter()
         .map(|filtering| binding::texture(wgpu::TextureViewDimension::D3, *filtering == Filtering::Sampler));
-    let light_volumes = lookup::bindings(variant.light_volumes, lookup::filtering(gpu));
+    let light_volumes = lookup::bindings(variant.light_volumes.len(), lookup::filtering(gpu));
+    let shadows = volume_shadow::bindings(&variant.light_volumes);
     let scattered = variant.scattered.iter().filter(|scattered| **scattered);
     let scattered = scattered.flat_map(|_| [binding::texture(wgpu::TextureViewDimension::D3, true); 2]);
     let first = FIXED_BINDINGS + variant.filtering.len();
-    let first_classified = first + light_volumes.len();
+    let first_shadow = first + light_volumes.len();
+    let first_classified = first_shadow + shadows.len();
     let classified = classification::bindings(&variant.classifications);
     let first_scattered = first_classified + classified.len();
-    let bindings: Vec<_> =
-        fixed.into_iter().chain(textures).chain(light_volumes).chain(classified).chain(scattered).collect();
+    let bindings: Vec<_> = fixed
+        .into_iter()
+        .chain(textures)
+        .chain(light_volumes)
+        .chain(shadows)
+        .chain(classified)
+        .chain(scattered)
+        .collect();
     Draw::new(
         gpu,
         &DrawDescriptor {
@@ -292,7 +301,8 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
                 ("volumes", volumes_module(&variant.filtering, variant.any_lit, FIXED_BINDINGS)),
                 classifications_module(&variant.classifications, first_classified),
                 lights_module(variant.light_capacity),
-                lookup::light_volumes_module(variant.light_volumes, lookup::filtering(gpu), first),
+                lookup::light_volumes_module(variant.light_volumes.len(), lookup::filtering(gpu), first),
+                volume_shadow::module(&variant.light_volumes, first_shadow),
                 scattered_module(&variant.scattered, first_scattered),
             ],
             entry_points: ("cover", "march"),
@@ -429,6 +439,15 @@ fn instances(
         first_sweep += volume.light_volumes.map_or(0, |own| own.0.len() as u32);
     }
     all
+}
+
+/// The shadow on each of them.
+fn shadows<'a>(volumes: &[VolumeData<'a>]) -> Vec<Option<&'a VolumeShadow>> {
+    let of_volume = |volume: &VolumeData<'a>| {
+        let (all, shadows) = (volume.light_volumes.into_iter().flat_map(|own| &own.0), volume.shadows);
+        all.map(|own| shadows?.of(own.light)).collect::<Vec<_>>()
+    };
+    volumes.iter().flat_map(of_volume).collect()
 }
 
 /// The light volumes of all volumes, in order.
@@ -578,6 +597,9 @@ fn draw(
     let light_volumes = light_volumes(volumes);
     let (sweeps, repeating) = (lookup::sweeps(gpu, &light_volumes), lookup::sampler(gpu));
     resources.extend(lookup::resources(&light_volumes, &sweeps, &repeating));
+    let shadows: Vec<&VolumeShadow> = shadows(volumes).into_iter().flatten().collect();
+    let shadow_places = volume_shadow::places(gpu, &shadows);
+    resources.extend(volume_shadow::resources(&shadows, &shadow_places));
     let classified = volumes.iter().filter_map(|volume| match classification_of(volume) {
         Classification::Post => None,
         Classification::Pre => volume.voxels.map(|voxels| &voxels.view),

@@ -7,6 +7,7 @@
 use super::light_cells::LightCells;
 use super::light_volume::lookup;
 use super::light_volume::{LightVolume, LightVolumes, lighting_in_force, scene_from_texture};
+use super::volume_shadow::{self, VolumeShadow, VolumeShadows};
 use crate::components::{Auto, Placement, SceneSettings, Shading, VolumeLighting};
 use crate::gpu::{
     Gpu, GpuError, Kernel, KernelDescriptor, PassTimer, binding, storage, uniform_buffer, uniform_each,
@@ -39,6 +40,7 @@ pub(crate) struct ScatteredLayer {
 struct Recipe {
     cells: u64,
     light_volume: u64,
+    shadow: Option<u64>,
     sweeps: Vec<AxisSweep>,
 }
 
@@ -60,7 +62,8 @@ pub(crate) struct AxisSweep {
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct Scatterer {
-    kernels: Option<[Kernel; 2]>,
+    /// With and without a shadow, away from the light and back.
+    kernels: [Option<[Kernel; 2]>; 2],
     version: u64,
 }
 
@@ -187,6 +190,7 @@ type Volumes<'w, 's> = Query<
         Option<&'static Shading>,
         &'static LightCells,
         &'static LightVolumes,
+        Option<&'static VolumeShadows>,
         Option<&'static mut ScatteredLight>,
     ),
 >;
@@ -203,7 +207,9 @@ pub(crate) fn run(
         commands.entity(entity).remove::<ScatteredLight>();
     }
     let mut held = 0;
-    for (entity, loaded, placement, lighting, shading, cells, light_volumes, mut kept) in &mut volumes {
+    for (entity, loaded, placement, lighting, shading, cells, light_volumes, shadows, mut kept) in
+        &mut volumes
+    {
         let lighting = lighting_in_force(lighting, shading, &settings);
         let scene_from_texture = scene_from_texture(loaded, placement, &settings);
         let mut own = ScatteredLight::default();
@@ -212,7 +218,13 @@ pub(crate) fn run(
         for light_volume in &light_volumes.0 {
             let direction = light_volume.sweep.step();
             let sweeps = AxisSweep::all(&lighting, cells.grid.size(), direction, scene_from_texture);
-            let recipe = Recipe { cells: cells.version, light_volume: light_volume.version, sweeps };
+            let shadow = shadows.and_then(|shadows| shadows.of(light_volume.light));
+            let recipe = Recipe {
+                cells: cells.version,
+                light_volume: light_volume.version,
+                shadow: shadow.map(|shadow| shadow.version),
+                sweeps,
+            };
             let found = old.iter().position(|layer| layer.light == light_volume.light);
             let found = found.map(|index| old.swap_remove(index)).filter(|found| found.recipe == recipe);
             if let Some(found) = found {
@@ -220,15 +232,8 @@ pub(crate) fn run(
                 all.0.push(found);
                 continue;
             }
-            match scatter(
-                &gpu,
-                &mut scatterer,
-                cells,
-                light_volume,
-                &recipe,
-                timer.as_deref_mut(),
-                &mut report,
-            ) {
+            let lit = (light_volume, shadow);
+            match scatter(&gpu, &mut scatterer, cells, lit, &recipe, timer.as_deref_mut(), &mut report) {
                 Ok(buffer) => {
                     scatterer.version += 1;
                     held += buffer.size();
@@ -255,12 +260,12 @@ fn scatter(
     gpu: &Gpu,
     scatterer: &mut Scatterer,
     cells: &LightCells,
-    light_volume: &LightVolume,
+    (light_volume, shadow): (&LightVolume, Option<&VolumeShadow>),
     recipe: &Recipe,
     mut timer: Option<&mut PassTimer>,
     report: &mut Report,
 ) -> Result<wgpu::Buffer, GpuError> {
-    let [forward, back] = scatterer.kernels(gpu, report)?;
+    let [forward, back] = scatterer.kernels(gpu, shadow.is_some(), report)?;
     let size = cells.grid.size();
     let count = u64::from(size.element_product());
     let widest = recipe.sweeps.iter().map(AxisSweep::columns).max();
@@ -271,6 +276,8 @@ fn scatter(
     let (slices, stride) = uniform_each(gpu, "slices", &indices);
     let light_volumes = [light_volume];
     let (sweeps, sampler) = (lookup::sweeps(gpu, &light_volumes), lookup::sampler(gpu));
+    let shadows: Vec<&VolumeShadow> = shadow.into_iter().collect();
+    let shadow_places = volume_shadow::places(gpu, &shadows);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     for sweep in &recipe.sweeps {
         let uniform = uniform_buffer(gpu, "scatter sweep", &sweep.uniform());
@@ -283,6 +290,7 @@ fn scatter(
             scattered.as_entire_binding(),
         ];
         resources.extend(lookup::resources(&light_volumes, &sweeps, &sampler));
+        resources.extend(volume_shadow::resources(&shadows, &shadow_places));
         let columns = sweep.columns();
         let away = (0..sweep.slices()).map(|slice| slice * stride);
         let timing = timer.as_deref_mut().and_then(|timer| timer.time_compute("scattered_light"));
@@ -297,19 +305,20 @@ fn scatter(
 
 impl Scatterer {
     /// The kernels of the sweeps away from the light and back, made when they are first asked for.
-    fn kernels(&mut self, gpu: &Gpu, report: &mut Report) -> Result<&[Kernel; 2], GpuError> {
-        let kernels = match self.kernels.take() {
+    fn kernels(&mut self, gpu: &Gpu, shadowed: bool, report: &mut Report) -> Result<&[Kernel; 2], GpuError> {
+        let known = &mut self.kernels[usize::from(shadowed)];
+        let kernels = match known.take() {
             Some(kernels) => kernels,
             None => {
                 report.pipelines.extend(["scattered_light"; 2]);
-                [make(gpu, "forward")?, make(gpu, "back")?]
+                [make(gpu, shadowed, "forward")?, make(gpu, shadowed, "back")?]
             }
         };
-        Ok(self.kernels.insert(kernels))
+        Ok(known.insert(kernels))
     }
 }
 
-fn make(gpu: &Gpu, entry_point: &str) -> Result<Kernel, GpuError> {
+fn make(gpu: &Gpu, shadowed: bool, entry_point: &str) -> Result<Kernel, GpuError> {
     let filtering = lookup::filtering(gpu);
     let mut bindings = vec![
         binding::UNIFORM,
@@ -320,7 +329,12 @@ fn make(gpu: &Gpu, entry_point: &str) -> Result<Kernel, GpuError> {
         binding::STORAGE_OUT,
     ];
     bindings.extend(lookup::bindings(1, filtering));
-    let generated = [lookup::light_volumes_module(1, filtering, FIXED_BINDINGS)];
+    let first_shadow = bindings.len();
+    bindings.extend(volume_shadow::bindings(&[shadowed]));
+    let generated = [
+        lookup::light_volumes_module(1, filtering, FIXED_BINDINGS),
+        volume_shadow::module(&[shadowed], first_shadow),
+    ];
     Kernel::new(
         gpu,
         &KernelDescriptor {
