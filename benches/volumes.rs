@@ -94,7 +94,9 @@ fn lightings(g: f64, quick: bool, only: Option<&String>) -> Vec<String> {
     let mut all = vec!["EmissionAbsorption".to_owned(), "Gradient()".to_owned()];
     let resolutions: &[f64] = if quick { &[1.0] } else { &[1.0, 0.5, 0.25, 0.125] };
     for name in ["SingleScattering", "LightVolume"] {
-        all.extend(resolutions.iter().map(|resolution| format!("{name}(g: {g:?}, resolution: {resolution:?})")));
+        all.extend(
+            resolutions.iter().map(|resolution| format!("{name}(g: {g:?}, resolution: {resolution:?})")),
+        );
     }
     all
 }
@@ -284,7 +286,8 @@ impl Bench {
         let least = |times: Vec<f64>| times.into_iter().fold(f64::INFINITY, f64::min);
         let still = least((1..REPETITIONS).map(|_| self.frame(self.direction)).collect());
         // In a small picture the light is most of it, and what else there is goes off again.
-        let size = std::mem::replace(&mut self.app.world_mut().resource_mut::<Picture>().size, UVec2::splat(8));
+        let size =
+            std::mem::replace(&mut self.app.world_mut().resource_mut::<Picture>().size, UVec2::splat(8));
         let small = least((0..REPETITIONS).map(|_| self.frame(self.direction)).collect());
         let turned = |index: usize| self.direction + Vec3::new(0.0, 0.01 * index as f32, 0.0);
         let directions: Vec<Vec3> = (1..=REPETITIONS).map(turned).collect();

@@ -10,6 +10,7 @@
 // writes r32float: mean sigma_t times the length of a slice
 
 #import classified
+#import shadows
 
 struct Columns {
     // Takes (across, across, slice), in cells from the corner of the volume, to the texture of the volume.
@@ -33,7 +34,6 @@ struct Segments {
 struct Shadow {
     // From the texture of the volume to the light's view: texels from the lower left, and height towards the light.
     view_from_texture: mat4x4f,
-    is_there: u32,
 }
 
 @group(0) @binding(4) var<uniform> columns: Columns;
@@ -80,12 +80,12 @@ fn place_of(across: vec2f, slice: f32) -> vec3f {
     return (columns.texture_from_cells * vec4f(across, slice, 1.0)).xyz;
 }
 
-// Optical depth of the stretch of a column that ends at `across` in a slice.
-fn depth_before(across: vec2f, slice: f32) -> f32 {
+// Optical depth of the stretch of a column that ends at `across` in a slice; of one that starts there, as if all of it were as there.
+fn depth_before(across: vec2f, slice: f32, starts: bool) -> f32 {
     let part = 1.0 / f32(segments.count);
     var sum = 0.0;
     for (var i = 0u; i < segments.count; i += 1u) {
-        let back = 1.0 - (f32(i) + 0.5) * part;
+        let back = select(1.0 - (f32(i) + 0.5) * part, 0.0, starts);
         sum += classified_at(place_of(across - columns.slope * back, slice - back)).a;
     }
     return sum * segments.length;
@@ -99,6 +99,12 @@ fn inside(across: vec2f) -> f32 {
     let left = select(across, columns.cells - across, columns.slope > vec2f(0.0)) / steep;
     let into = min(passed.x, passed.y);
     return select(into, min(into, min(left.x, left.y)), min(left.x, left.y) < 0.0);
+}
+
+// The remainder of whole numbers, at least 0: processors divide integers one at a time.
+fn repeated(at: vec2f, width: vec2f) -> vec2f {
+    let rest = at - width * floor(at / width);
+    return select(select(rest, rest + width, rest < vec2f(0.0)), rest - width, rest >= width);
 }
 
 @compute @workgroup_size(64)
@@ -116,12 +122,14 @@ fn sweep(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     var blockers = vec4f(-1e30);
     for (var slice = 0u; slice < columns.size.z; slice += 1u) {
         let first = vec2i(floor(-columns.slope * f32(slice))) - 3;
-        let now = first + (((across - first) % width) + width) % width;
+        let now = first + vec2i(repeated(vec2f(across - first), vec2f(width)));
         let at = vec2f(now) + 0.5 + columns.slope * f32(slice);
         let is_inside = inside(at);
         var mean: f32;
-        if all(now == column) {
-            let added = depth_before(at, f32(slice));
+        let starts = any(now != column);
+        // Looked up once for both: software adapters run every branch.
+        let added = depth_before(at, f32(slice), starts);
+        if !starts {
             depth += added;
             slices += 1.0;
             if is_inside >= 0.0 && was_inside < 0.0 {
@@ -133,16 +141,16 @@ fn sweep(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
             column = now;
             depth = 0.0;
             slices = 0.0;
-            if shadow.is_there != 0u {
+            if SHADOWED {
                 blockers = blocked(at, f32(slice));
             }
         }
         if slices > 0.0 {
             mean = depth / slices;
         } else {
-            mean = classified_at(place_of(at, f32(slice))).a * segments.length * f32(segments.count);
+            mean = added;
         }
-        if shadow.is_there != 0u {
+        if SHADOWED {
             mean += shade(blockers, place_of(at, f32(slice))) / max(slices, SOONEST);
         }
         was_inside = is_inside;

@@ -63,7 +63,8 @@ struct Recipe {
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct LightSweeper {
-    kernels: Vec<(Filtering, Kernel)>,
+    /// With or without meshes in the way.
+    kernels: Vec<((Filtering, bool), Kernel)>,
     version: u64,
 }
 
@@ -229,7 +230,7 @@ fn make(
         segments.as_entire_binding(),
         wgpu::BindingResource::TextureView(&texture.view),
     ]);
-    let kernel = sweeper.kernel(gpu, filtering, report)?;
+    let kernel = sweeper.kernel(gpu, (filtering, recipe.shadow.is_some()), report)?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     kernel.run(gpu, &mut encoder, &resources, Invocations::Count(size.x * size.y), timing);
     gpu.queue.submit([encoder.finish()]);
@@ -237,10 +238,21 @@ fn make(
     Ok(grid)
 }
 
+/// The WGSL module `shadows`: whether meshes are in the way.
+pub(crate) fn shadows_module(shadowed: bool) -> (&'static str, String) {
+    ("shadows", format!("const SHADOWED = {shadowed};\n"))
+}
+
 impl LightSweeper {
     /// The kernel, made when it is first asked for.
-    fn kernel(&mut self, gpu: &Gpu, filtering: Filtering, report: &mut Report) -> Result<&Kernel, GpuError> {
-        let known = self.kernels.iter().position(|(made_for, _)| *made_for == filtering);
+    fn kernel(
+        &mut self,
+        gpu: &Gpu,
+        variant: (Filtering, bool),
+        report: &mut Report,
+    ) -> Result<&Kernel, GpuError> {
+        let (filtering, shadowed) = variant;
+        let known = self.kernels.iter().position(|(made_for, _)| *made_for == variant);
         let index = match known {
             Some(index) => index,
             None => {
@@ -257,13 +269,16 @@ impl LightSweeper {
                     gpu,
                     &KernelDescriptor {
                         name: "light_volume",
-                        generated: &[("volumes", volumes_module(&[filtering], false, FIRST_VOLUME))],
+                        generated: &[
+                            ("volumes", volumes_module(&[filtering], FIRST_VOLUME)),
+                            shadows_module(shadowed),
+                        ],
                         entry_point: "sweep",
                         bindings: &bindings,
                     },
                 )?;
                 report.pipelines.push("light_volume");
-                self.kernels.push((filtering, kernel));
+                self.kernels.push((variant, kernel));
                 self.kernels.len() - 1
             }
         };

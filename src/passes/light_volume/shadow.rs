@@ -24,7 +24,6 @@ mirror! {
     "light_volume":
     pub(crate) struct ShadowUniform as "Shadow" {
         view_from_texture: Mat4,
-        is_there: u32,
     }
 }
 
@@ -63,7 +62,7 @@ pub(super) fn draw(
     report: &mut Report,
 ) -> Result<(wgpu::Buffer, wgpu::TextureView), GpuError> {
     let Some(Shadow { body, view, blockers }) = shadow else {
-        let uniform = ShadowUniform { view_from_texture: Mat4::ZERO, is_there: 0 };
+        let uniform = ShadowUniform { view_from_texture: Mat4::ZERO };
         let nothing = texture_of(gpu, "no shadow", UVec2::ONE, FORMAT, bytemuck::bytes_of(&Vec4::ZERO));
         return Ok((uniform_buffer(gpu, "shadow", &uniform), nothing.create_view(&Default::default())));
     };
@@ -81,6 +80,6 @@ pub(super) fn draw(
         * DAffine3::from_translation(-view.low.truncate().extend(0.0));
     let view_from_texture =
         texels_from_view * view.view_from_body * body.body_from_scene * texture_from_scene.inverse();
-    let uniform = ShadowUniform { view_from_texture: DMat4::from(view_from_texture).as_mat4(), is_there: 1 };
+    let uniform = ShadowUniform { view_from_texture: DMat4::from(view_from_texture).as_mat4() };
     Ok((uniform_buffer(gpu, "shadow", &uniform), target.view))
 }
