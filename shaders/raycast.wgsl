@@ -14,6 +14,7 @@
 #import phase
 #import two_stream
 #import volumes
+#import lighting
 #import light_volumes
 #import scattered
 #import shadows
@@ -188,21 +189,25 @@ fn shade(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre
 // Light that is scattered towards the eye: the source function where the albedo is `colour`. See `src/optics/two_stream.rs`.
 fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
     let albedo = min(colour, vec3f(1.0));
-    let is_often = volume.lighting >= 4u;
+    let is_often = ANY_OFTEN && volume.lighting >= 4u;
     // Where light is scattered often, what a forward peak scatters counts as light that was not.
     let beam = select(vec3f(1.0), two_stream_beam(albedo, volume.g), is_often);
     var arriving = vec3f(0.0);
     var specular = vec3f(0.0);
     var normal: Normal;
-    if volume.specular > 0.0 {
+    if ANY_HIGHLIGHT && volume.specular > 0.0 {
         normal = normal_at(index, volume, place, centre, ray);
     }
     for (var i = 0u; i < frame.light_count; i += 1u) {
         let depth = light_depth(volume.first_sweep + i, place);
-        let phase = henyey_greenstein(-lights[i].to_light, -ray.direction, volume.g);
         let light = lights[i].irradiance * light_seen(volume.first_sweep + i, place);
-        arriving += light * exp(-depth * beam) * phase;
-        if volume.specular > 0.0 {
+        if ANY_LEANING {
+            let phase = henyey_greenstein(-lights[i].to_light, -ray.direction, volume.g);
+            arriving += light * exp(-depth * beam) * phase;
+        } else {
+            arriving += light * (exp(-depth) / (4.0 * PI));
+        }
+        if ANY_HIGHLIGHT && volume.specular > 0.0 {
             specular += light * exp(-depth) / PI * highlight(normal, lights[i].to_light, volume.shininess, ray);
         }
     }
@@ -210,26 +215,31 @@ fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, cent
         let even = volume.fluence_scale / (4.0 * PI) * fluence_at(index, place);
         // The second grid is that of the flux, or that of light towards the eye.
         var second = vec3f(0.0);
-        if volume.g != 0.0 {
+        if ANY_LEANING && volume.g != 0.0 {
             second = flux_at(index, place);
         }
-        if volume.lighting == 5u {
+        if ANY_LEANING && volume.lighting == 5u {
             arriving += (1.0 - volume.g) * even + volume.g * volume.fluence_scale * second;
         } else {
             arriving += max(1.0 + 3.0 * volume.g * dot(volume.axes * -ray.direction, second), 0.0) * even;
         }
     }
-    return albedo * arriving + volume.emission * colour + volume.specular * min(4.0 * normal.steepness, 1.0) * specular;
+    let sent = albedo * arriving + volume.emission * colour;
+    if ANY_HIGHLIGHT {
+        return sent + volume.specular * min(4.0 * normal.steepness, 1.0) * specular;
+    }
+    return sent;
 }
 
 // What a piece of the medium sends to the eye, per share that it absorbs.
 fn source(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
-    switch volume.lighting {
-        case 1u: { return shade(index, volume, colour, place, centre, ray); }
-        case 2u, 4u, 5u: { return scatter(index, volume, colour, place, centre, ray); }
-        case 3u: { return volume.emission * colour; }
-        default: { return colour; }
+    if ANY_GRADIENT && volume.lighting == 1u {
+        return shade(index, volume, colour, place, centre, ray);
     }
+    if ANY_SCATTERING && (volume.lighting == 2u || volume.lighting >= 4u) {
+        return scatter(index, volume, colour, place, centre, ray);
+    }
+    return select(colour, volume.emission * colour, volume.lighting == 3u);
 }
 
 @fragment

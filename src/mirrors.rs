@@ -85,7 +85,8 @@ pub fn generated_modules() -> Vec<(&'static str, String)> {
     let (volumes, first, classified) = (16, 18, 32);
     let [light_volumes, veils] = passes::light_volume::through::modules(count, Sampler, first);
     vec![
-        ("volumes", passes::raycast::volumes_module(&[Sampler, Shader], true, volumes)),
+        ("volumes", passes::raycast::volumes_module(&[Sampler, Shader], volumes)),
+        passes::lighting::Kinds::all().module(),
         passes::raycast::classifications_module(&[Pre, PreIntegrated], classified),
         view::lights_module(4),
         light_volumes,

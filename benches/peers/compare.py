@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Tyndall and VTK draw the same volume, in turns; a report says what each frame cost and how the images differ.
 
-    python3 benches/peers/compare.py                      # everything
+    python3 benches/peers/compare.py                      # emission-absorption and Phong
+    python3 benches/peers/compare.py --columns scatter    # scattered light, which takes VTK long
     python3 benches/peers/compare.py --columns vtk        # VTK only
     python3 benches/peers/compare.py --columns startup    # process start to first PNG
 
@@ -41,6 +42,11 @@ class Column:
     title: str
     lighting: str
     mapper: str | None  # VTK's, or None for Tyndall
+    light_turns: bool = False
+
+    def scene(self):
+        """Which of Tyndall's scenes it draws."""
+        return f"{self.lighting}-turned" if self.light_turns else self.lighting
 
 
 # In the order they take turns.
@@ -52,14 +58,22 @@ COLUMNS = [
     Column("tyndall-phong", "Tyndall Phong", "phong", None),
     Column("vtk-gpu-phong", "VTK Phong, GPU mapper", "phong", "gpu"),
 ]
+# VTK computes all anew in each frame, whatever changed; Tyndall keeps the light of a volume until the light turns.
+SCATTERING_COLUMNS = [
+    Column("vtk-gpu-scatter", "VTK volumetric scattering, GPU mapper", "scatter", "gpu"),
+    Column("tyndall-scatter", "Tyndall light volume, view turns", "scatter", None),
+    Column("tyndall-scatter-turned", "Tyndall light volume, view and light turn", "scatter", None, light_turns=True),
+]
+ALL_COLUMNS = COLUMNS + SCATTERING_COLUMNS
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
         "--columns",
-        default="all",
-        help="all, vtk, tyndall, startup, or keys with commas between: " + ", ".join(c.key for c in COLUMNS),
+        default="local",
+        help="local (emission-absorption and Phong), scatter, all, vtk, tyndall, startup, or keys with commas between: "
+        + ", ".join(c.key for c in ALL_COLUMNS),
     )
     parser.add_argument("--volume", choices=setting.VOLUMES, default="engine")
     parser.add_argument("--rounds", type=at_least_one, default=3, help="how often each column has its turn (3)")
@@ -83,7 +97,9 @@ def at_least_one(text):
 
 def chosen_columns(text):
     groups = {
-        "all": COLUMNS,
+        "all": ALL_COLUMNS,
+        "local": COLUMNS,
+        "scatter": SCATTERING_COLUMNS,
         "startup": COLUMNS,
         "vtk": [c for c in COLUMNS if c.mapper],
         "tyndall": [c for c in COLUMNS if not c.mapper],
@@ -91,10 +107,10 @@ def chosen_columns(text):
     if text in groups:
         return groups[text]
     keys = text.split(",")
-    unknown = [key for key in keys if key not in {c.key for c in COLUMNS}]
+    unknown = [key for key in keys if key not in {c.key for c in ALL_COLUMNS}]
     if unknown:
-        raise Failure(f"no column {unknown[0]!r}; there are {', '.join([*groups, *(c.key for c in COLUMNS)])}")
-    return [c for c in COLUMNS if c.key in keys]
+        raise Failure(f"no column {unknown[0]!r}; there are {', '.join([*groups, *(c.key for c in ALL_COLUMNS)])}")
+    return [c for c in ALL_COLUMNS if c.key in keys]
 
 
 # --- the venv ---------------------------------------------------------------------------------------------------------
@@ -196,7 +212,7 @@ class Bench:
         self.images.mkdir(parents=True, exist_ok=True)
         self.runtime_dir = os.environ.get("XDG_RUNTIME_DIR") or runtime_dir
         self.tyndall = find_tyndall(args.tyndall) if any(not c.mapper for c in columns) else None
-        self.scenes = {x: tyndall_frames.write_scene(self.data, args.volume, x) for x in ("ea", "phong")}
+        self.scenes = {x: tyndall_frames.write_scene(self.data, args.volume, x) for x in tyndall_frames.TITLES}
 
     def facts(self):
         return {
@@ -237,7 +253,7 @@ class Bench:
         if not column.mapper:
             return tyndall_frames.cpu_per_frame(
                 self.tyndall,
-                self.scenes[column.lighting],
+                self.scenes[column.scene()],
                 self.prefix(column),
                 warm_up,
                 frames,
@@ -252,7 +268,7 @@ class Bench:
         if column.mapper:
             result, facts = self.vtk(column, 0, 1)
         else:
-            scene, prefix = self.scenes[column.lighting], self.prefix(column)
+            scene, prefix = self.scenes[column.scene()], self.prefix(column)
             env = self.tyndall_environment()
             result, facts = tyndall_frames.first_image(self.tyndall, scene, prefix, env, self.args.timeout), {}
         if result.first_png_s is None:

@@ -14,7 +14,7 @@ import setting
 from processes import Failure
 
 AMPLIFICATION = 8  # of the difference images, so that a difference of one step can be seen
-LIGHTINGS = {"ea": "emission-absorption", "phong": "Phong"}
+LIGHTINGS = {"ea": "emission-absorption", "phong": "Phong", "scatter": "scattered light"}
 
 
 # --- figures ----------------------------------------------------------------------------------------------------------
@@ -114,7 +114,7 @@ def compare_images(args, columns, frames):
     """Every pair of columns with the same lighting, at the first and at the last frame."""
     folder, results = args.out / "images", []
     for frame, lighting in itertools.product(frames, LIGHTINGS):
-        same = [c for c in columns if c.lighting == lighting]
+        same = [c for c in columns if c.lighting == lighting and not c.light_turns]
         pixels = {c.key: read(folder / f"{args.volume}_{c.key}_{frame:04}.png") for c in same}
         for a, b in itertools.combinations(same, 2):
             x, y = pixels[a.key], pixels[b.key]

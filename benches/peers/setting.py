@@ -21,6 +21,9 @@ PHONG = {"ambient": 0.2, "diffuse": 0.8, "specular": 0.3, "shininess": 20.0}
 # The half-vector turns by half the angle of the mirrored light: four times the exponent makes a highlight of the same width.
 BLINN_SHININESS = 4.0 * PHONG["shininess"]
 
+# VTK's volumetric scattering: only secondary rays, no gradients, each 0.3 of the longest way through the volume; even scattering.
+SCATTERING = {"blending": 1.0, "reach": 0.3, "anisotropy": 0.0}
+
 WARM_UP_FRAMES = 2
 
 

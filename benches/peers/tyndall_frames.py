@@ -28,9 +28,9 @@ SCENE = """\
         "sun": (
             DirectionalLight: (
                 direction: {light_direction},
-                // pi: a white Lambertian surface that faces it has radiance 1
+                // pi: a white Lambertian surface that faces it has radiance 1; 4 pi: so has a white grain that scatters evenly
                 irradiance: {irradiance},
-            ),
+            ),{light_turntable}
         ),
         "{name}": (
             Volume: Raw(
@@ -53,7 +53,14 @@ SCENE = """\
 )
 """
 
-TITLES = {"ea": "Emission and absorption", "phong": "Gradient Phong lighting"}
+TITLES = {
+    "ea": "Emission and absorption",
+    "phong": "Gradient Phong lighting",
+    "scatter": "Scattered light",
+    "scatter-turned": "Scattered light, of a light that turns",
+}
+LIGHT_TURNTABLE = """
+            Turntable: (degrees_per_second: {degrees_per_second}, axis: {up}),"""
 
 
 def ron(value):
@@ -63,9 +70,15 @@ def ron(value):
     return repr(round(float(value), 9))
 
 
+def is_scattering(lighting):
+    return lighting.startswith("scatter")
+
+
 def lighting_value(lighting):
     if lighting == "ea":
         return "EmissionAbsorption"
+    if is_scattering(lighting):
+        return "LightVolume()"
     blinn = {**setting.PHONG, "shininess": setting.BLINN_SHININESS}
     return "Gradient(" + ", ".join(f"{key}: {ron(value)}" for key, value in blinn.items()) + ")"
 
@@ -73,6 +86,8 @@ def lighting_value(lighting):
 def scene(name, lighting):
     volume = setting.VOLUMES[name]
     points = setting.merged_points(volume)
+    pace = ron(setting.DEGREES_PER_FRAME * FRAMES_PER_SECOND)
+    turntable = LIGHT_TURNTABLE.format(degrees_per_second=pace, up=ron(setting.UP))
     return SCENE.format(
         title=f"{TITLES[lighting]}, {name}",
         background=ron(setting.BACKGROUND),
@@ -80,9 +95,10 @@ def scene(name, lighting):
         target=ron(setting.TARGET),
         up=ron(setting.UP),
         fov=ron(setting.VERTICAL_FOV),
-        degrees_per_second=ron(setting.DEGREES_PER_FRAME * FRAMES_PER_SECOND),
+        degrees_per_second=pace,
+        light_turntable=turntable if lighting == "scatter-turned" else "",
         light_direction=ron([to - at for at, to in zip(setting.LIGHT_FROM, setting.TARGET)]),
-        irradiance=ron([math.pi] * 3),
+        irradiance=ron([math.pi * (4 if is_scattering(lighting) else 1)] * 3),
         name=name,
         file_name=volume.file_name(name),
         samples=volume.samples,

@@ -59,11 +59,12 @@ def appearance(volume, lighting):
     look.SetScalarOpacity(opacity)
     look.SetScalarOpacityUnitDistance(setting.OPACITY_LENGTH)
     look.SetInterpolationTypeToLinear()
-    look.SetShade(lighting == "phong")
+    look.SetShade(lighting != "ea")
     look.SetAmbient(setting.PHONG["ambient"])
     look.SetDiffuse(setting.PHONG["diffuse"])
     look.SetSpecular(setting.PHONG["specular"])
     look.SetSpecularPower(setting.PHONG["shininess"])
+    look.SetScatteringAnisotropy(setting.SCATTERING["anisotropy"])
     return look
 
 
@@ -72,6 +73,11 @@ def gpu_mapper():
     mapper.SetMaxMemoryInBytes(GPU_MEMORY_BYTES)
     mapper.SetUseJittering(False)
     return mapper
+
+
+def scatter(mapper):
+    mapper.SetVolumetricScatteringBlending(setting.SCATTERING["blending"])
+    mapper.SetGlobalIlluminationReach(setting.SCATTERING["reach"])
 
 
 def cpu_mapper():
@@ -173,7 +179,7 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--data", type=Path, required=True, help="folder with the volumes")
     parser.add_argument("--volume", choices=setting.VOLUMES, default="engine")
-    parser.add_argument("--lighting", choices=("ea", "phong"), required=True)
+    parser.add_argument("--lighting", choices=("ea", "phong", "scatter"), required=True)
     parser.add_argument("--mapper", choices=("cpu", "gpu"), required=True)
     parser.add_argument("--warm-up", type=int, default=setting.WARM_UP_FRAMES)
     parser.add_argument("--frames", type=int, default=5)
@@ -185,7 +191,10 @@ def main():
     args = arguments()
     spec = setting.VOLUMES[args.volume]
     volume = vtkVolume()
-    volume.SetMapper(make_mapper(args.mapper, load(spec, args.data / spec.file_name(args.volume))))
+    mapper = make_mapper(args.mapper, load(spec, args.data / spec.file_name(args.volume)))
+    if args.lighting == "scatter":
+        scatter(mapper)
+    volume.SetMapper(mapper)
     volume.SetProperty(appearance(spec, args.lighting))
     renderer = stage(volume)
     window = off_screen(renderer)

@@ -33,8 +33,9 @@ struct Slice {
 // For each cell of a slice, of two slices in turn: what goes on and how it spreads, and what else is known at that face.
 @group(0) @binding(3) var<storage, read_write> faces: array<vec4f>;
 
-// The steps with which light goes over to cells beside, in cells, and the greatest share that goes over one step.
-const FAR_STEP = 3;
+// Light goes over to cells beside in steps of 1, 3 and 9 cells, as far as it spreads; the greatest share that goes over one step.
+const STEPS = 3u;
+const LONGER = 3;
 const MOST = 0.2;
 
 // Cells across, and slices.
@@ -75,16 +76,19 @@ fn spread_in(cell: vec4f) -> f32 {
     return min(sweep_of.spread * sweep_of.along * free, 1e6 * dot(sweep_of.across, sweep_of.across));
 }
 
-// The shares of light that go over a near and a far step, for a variance in squares of a cell.
-fn shares(variance: f32) -> vec2f {
+// The shares of light that go over steps of each length, for a variance in squares of a cell.
+fn shares(variance: f32) -> vec3f {
+    let longer = f32(LONGER * LONGER);
     let near = 2.0 * MOST;
-    let far = 2.0 * MOST * f32(FAR_STEP * FAR_STEP);
+    let far = near * longer;
+    let farther = far * longer;
     let more = clamp((variance - near) / (far - near), 0.0, 1.0);
-    return vec2f(min(0.5 * variance, MOST * (1.0 - more)), MOST * more);
+    let most = clamp((variance - far) / (farther - far), 0.0, 1.0);
+    return vec3f(min(0.5 * variance, MOST * (1.0 - more)), MOST * (more - most), MOST * most);
 }
 
 // What is exchanged with a cell beside.
-fn exchanged(own: vec4f, across: vec2i, step: vec2i, face: u32) -> vec3f {
+fn exchanged(own: vec4f, across: vec2i, step: vec2i, face: u32, which: u32) -> vec3f {
     let n = vec2i(extent().xy);
     let there = across + step;
     let is_outside = any(there < vec2i(0)) || any(there >= n);
@@ -94,9 +98,7 @@ fn exchanged(own: vec4f, across: vec2i, step: vec2i, face: u32) -> vec3f {
     // Harmonic: light cannot leave a cell faster than it moves in it. The same for both, so that none is made or lost.
     let spread = 2.0 * own.a / (1.0 + own.a / max(other.a, 1e-30));
     let length = select(sweep_of.across.y, sweep_of.across.x, step.x != 0);
-    let share = shares(spread / (length * length));
-    let is_far = abs(step.x + step.y) > 1;
-    return select(share.x, share.y, is_far) * (other.rgb - own.rgb);
+    return shares(spread / (length * length))[which] * (other.rgb - own.rgb);
 }
 
 // What has gone on from a slice, spread.
@@ -105,9 +107,11 @@ fn spread_out(across: vec2u, face: u32) -> vec3f {
     let own = faces[2u * (face * n.x * n.y + across.y * n.x + across.x)];
     let at = vec2i(across);
     var sum = own.rgb;
-    for (var length = 1; length <= FAR_STEP; length += FAR_STEP - 1) {
-        sum += exchanged(own, at, vec2i(length, 0), face) + exchanged(own, at, vec2i(-length, 0), face);
-        sum += exchanged(own, at, vec2i(0, length), face) + exchanged(own, at, vec2i(0, -length), face);
+    var length = 1;
+    for (var which = 0u; which < STEPS; which += 1u) {
+        sum += exchanged(own, at, vec2i(length, 0), face, which) + exchanged(own, at, vec2i(-length, 0), face, which);
+        sum += exchanged(own, at, vec2i(0, length), face, which) + exchanged(own, at, vec2i(0, -length), face, which);
+        length *= LONGER;
     }
     return max(sum, vec3f(0.0));
 }

@@ -169,7 +169,7 @@ impl CellAverager {
                     gpu,
                     &KernelDescriptor {
                         name: "light_cells",
-                        generated: &[("volumes", volumes_module(&[filtering], false, FIRST_VOLUME))],
+                        generated: &[("volumes", volumes_module(&[filtering], FIRST_VOLUME))],
                         entry_point: "average",
                         bindings: &bindings,
                     },

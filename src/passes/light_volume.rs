@@ -228,7 +228,7 @@ impl LightSweeper {
                     gpu,
                     &KernelDescriptor {
                         name: "light_volume",
-                        generated: &[("volumes", volumes_module(&[filtering], false, FIRST_VOLUME))],
+                        generated: &[("volumes", volumes_module(&[filtering], FIRST_VOLUME))],
                         entry_point: "sweep",
                         bindings: &bindings,
                     },

@@ -10,6 +10,7 @@ pub mod gbuffer;
 pub mod light_cells;
 pub mod light_gbuffer;
 pub mod light_volume;
+pub mod lighting;
 pub mod medium;
 pub mod preclassify;
 pub mod preintegrate;

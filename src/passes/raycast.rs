@@ -8,6 +8,7 @@ use super::classification;
 use super::classify::{Classified, classify};
 use super::eye_light::EyeLight;
 use super::light_volume::{LightVolume, LightVolumes, lighting_in_force, lookup, scene_from_texture};
+use super::lighting::{EMITS, GRADIENT, Kinds, SCATTERS, SCATTERS_ONCE, SCATTERS_TOWARDS_EYE, UNLIT};
 use super::preclassify::{ClassifiedVoxels, Preclassifier, preclassify};
 use super::preintegrate::{PreintegratedPairs, preintegrate};
 use super::summed_light::SummedLight;
@@ -69,8 +70,8 @@ struct Variant {
     /// One for each volume.
     classifications: Vec<Classification>,
     light_capacity: usize,
-    /// Whether any volume is lit by its gradient, which costs more than the rest together.
-    any_lit: bool,
+    /// How volumes are lit, which costs more than the rest together.
+    kinds: Kinds,
     /// For each light volume of all volumes together whether meshes shadow it.
     light_volumes: Vec<bool>,
     /// Which volumes have scattered light.
@@ -179,11 +180,12 @@ fn run(
         return;
     }
     let timing = timer.as_mut().and_then(|timer| timer.time("raycast"));
-    let drawn = prepare(&gpu, &picture, &volumes, frame.light_capacity, &mut caster, &mut report).map(|()| {
-        let instances = instances(&view, &settings, &volumes, &caster);
-        draw(&gpu, &frame, &settings, &volumes, &instances, &surface, &caster, timing);
-        report.ran("raycast", &[("pixels", u64::from(picture.size.x) * u64::from(picture.size.y))]);
-    });
+    let drawn = prepare(&gpu, &picture, &settings, &volumes, frame.light_capacity, &mut caster, &mut report)
+        .map(|()| {
+            let instances = instances(&view, &settings, &volumes, &caster);
+            draw(&gpu, &frame, &settings, &volumes, &instances, &surface, &caster, timing);
+            report.ran("raycast", &[("pixels", u64::from(picture.size.x) * u64::from(picture.size.y))]);
+        });
     failure.keep(drawn);
 }
 
@@ -221,17 +223,18 @@ fn classification_of(volume: &VolumeData) -> Classification {
 fn prepare(
     gpu: &Gpu,
     picture: &Picture,
+    settings: &SceneSettings,
     volumes: &[VolumeData],
     light_capacity: usize,
     caster: &mut RayCaster,
     report: &mut Report,
 ) -> Result<(), GpuError> {
     let filtering = volumes.iter().map(|volume| volume.texture.format.filtering).collect();
-    let any_lit = volumes.iter().any(|volume| !matches!(volume.lighting, VolumeLighting::EmissionAbsorption));
+    let kinds = Kinds::of(volumes.iter().map(|volume| lit(volume, settings)));
     let light_volumes = shadows(volumes).iter().map(Option::is_some).collect();
     let scattered = volumes.iter().map(|volume| volume.summed.is_some()).collect();
     let classifications = volumes.iter().map(classification_of).collect();
-    let variant = Variant { filtering, classifications, light_capacity, any_lit, light_volumes, scattered };
+    let variant = Variant { filtering, classifications, light_capacity, kinds, light_volumes, scattered };
     if caster.draw.as_ref().is_none_or(|(made_for, _)| *made_for != variant) {
         caster.draw = Some((variant.clone(), make(gpu, &variant)?));
         report.pipelines.push("raycast");
@@ -298,7 +301,8 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
         &DrawDescriptor {
             name: "raycast",
             generated: &[
-                ("volumes", volumes_module(&variant.filtering, variant.any_lit, FIXED_BINDINGS)),
+                ("volumes", volumes_module(&variant.filtering, FIXED_BINDINGS)),
+                variant.kinds.module(),
                 classifications_module(&variant.classifications, first_classified),
                 lights_module(variant.light_capacity),
                 lookup::light_volumes_module(variant.light_volumes.len(), lookup::filtering(gpu), first),
@@ -323,12 +327,11 @@ pub(crate) fn classifications_module(
 }
 
 /// The WGSL module `volumes`: one texture binding a volume, and `texel_at(volume, place)` that interpolates in it.
-pub(crate) fn volumes_module(filtering: &[Filtering], any_lit: bool, first_binding: usize) -> String {
+pub(crate) fn volumes_module(filtering: &[Filtering], first_binding: usize) -> String {
     let brick = BrickRanges::BRICK;
     let count = filtering.len();
-    let mut text = format!(
-        "const VOLUMES = {count}u;\nconst BRICK_ROW = {BRICK_ROW}u;\nconst BRICK = {brick}.0;\nconst ANY_LIT = {any_lit};\n"
-    );
+    let mut text =
+        format!("const VOLUMES = {count}u;\nconst BRICK_ROW = {BRICK_ROW}u;\nconst BRICK = {brick}.0;\n");
     let mut cases = String::new();
     for (index, filtering) in filtering.iter().enumerate() {
         let binding = first_binding + index;
@@ -462,8 +465,7 @@ fn instance(
     bricks_start: u32,
     first_sweep: u32,
 ) -> VolumeInstance {
-    let VolumeData { loaded, classified, texture, placement, lighting, ray_cast, shading, .. } = volume;
-    let VolumeData { light_volumes, voxels, summed, eye_light, .. } = volume;
+    let VolumeData { loaded, classified, texture, placement, ray_cast, voxels, summed, .. } = volume;
     let eye_from_texture = view.eye_from_scene * scene_from_texture(loaded, placement, settings);
     let size = DVec3::from(loaded.data.size.map(f64::from));
     let axes = eye_from_texture.matrix3;
@@ -471,14 +473,7 @@ fn instance(
         (axes.x_axis.length() / size.x).min(axes.y_axis.length() / size.y).min(axes.z_axis.length() / size.z);
     let (lookup_scale, lookup_offset) = classified.lookup(texture.format);
     let [greatest_colour, greatest_extinction] = voxels.map_or([1.0; 2], |voxels| voxels.greatest);
-    let mut lit = Lit::of(&lighting_in_force(lighting, *shading, settings));
-    if [SCATTERS_ONCE, SCATTERS].contains(&lit.kind) && light_volumes.is_none_or(|own| own.0.is_empty()) {
-        // Nothing arrives where there is no light.
-        lit.kind = UNLIT;
-    }
-    if lit.kind == SCATTERS && eye_light.is_some() {
-        lit.kind = SCATTERS_TOWARDS_EYE;
-    }
+    let lit = lit(volume, settings);
     VolumeInstance {
         texture_from_eye: glam::DMat4::from(eye_from_texture.inverse()).as_mat4(),
         size: size.as_vec3(),
@@ -510,23 +505,29 @@ fn instance(
     }
 }
 
-/// Kinds of lighting, as the shader knows them.
-const EMITS: u32 = 0;
-const GRADIENT: u32 = 1;
-const SCATTERS_ONCE: u32 = 2;
-const UNLIT: u32 = 3;
-const SCATTERS: u32 = 4;
-const SCATTERS_TOWARDS_EYE: u32 = 5;
+/// How a volume is lit.
+fn lit(volume: &VolumeData, settings: &SceneSettings) -> Lit {
+    let mut lit = Lit::of(&lighting_in_force(volume.lighting, volume.shading, settings));
+    let is_scattering = [SCATTERS_ONCE, SCATTERS].contains(&lit.kind);
+    if is_scattering && volume.light_volumes.is_none_or(|own| own.0.is_empty()) {
+        // Nothing arrives where there is no light.
+        lit.kind = UNLIT;
+    }
+    if lit.kind == SCATTERS && volume.eye_light.is_some() {
+        lit.kind = SCATTERS_TOWARDS_EYE;
+    }
+    lit
+}
 
 /// A lighting as the shader knows it.
 #[derive(Default)]
-struct Lit {
-    kind: u32,
+pub(super) struct Lit {
+    pub(super) kind: u32,
     ambient: f32,
     diffuse: f32,
-    specular: f32,
+    pub(super) specular: f32,
     shininess: f32,
-    g: f32,
+    pub(super) g: f32,
     emission: f32,
 }
 

@@ -1,0 +1,69 @@
+//! Which kinds of lighting the ray caster needs code for: software adapters run all that is there, whether its result counts or not.
+
+use super::raycast::Lit;
+use std::fmt::Write;
+
+/// Kinds of lighting, as the shader knows them.
+pub(super) const EMITS: u32 = 0;
+pub(super) const GRADIENT: u32 = 1;
+pub(super) const SCATTERS_ONCE: u32 = 2;
+pub(super) const UNLIT: u32 = 3;
+pub(super) const SCATTERS: u32 = 4;
+pub(super) const SCATTERS_TOWARDS_EYE: u32 = 5;
+
+/// What any of the volumes needs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Kinds {
+    /// Anything but the colours as they are.
+    lit: bool,
+    /// Gradients for normals.
+    gradient: bool,
+    /// Light that was scattered, once or more often.
+    scattering: bool,
+    /// Light that was scattered more often.
+    often: bool,
+    /// Scattering that is not the same in all directions.
+    leaning: bool,
+    /// Highlights in scattered light.
+    highlights: bool,
+}
+
+impl Kinds {
+    pub(super) fn of(volumes: impl IntoIterator<Item = Lit>) -> Self {
+        let mut kinds = Self::default();
+        for lit in volumes {
+            let once = lit.kind == SCATTERS_ONCE;
+            let often = [SCATTERS, SCATTERS_TOWARDS_EYE].contains(&lit.kind);
+            kinds.lit |= lit.kind != EMITS;
+            kinds.gradient |= lit.kind == GRADIENT;
+            kinds.scattering |= once || often;
+            kinds.often |= often;
+            kinds.leaning |= (once || often) && lit.g != 0.0;
+            kinds.highlights |= often && lit.specular > 0.0;
+        }
+        kinds
+    }
+
+    /// For shaders that want everything.
+    pub fn all() -> Self {
+        Self { lit: true, gradient: true, scattering: true, often: true, leaning: true, highlights: true }
+    }
+
+    /// The WGSL module `lighting`.
+    pub fn module(&self) -> (&'static str, String) {
+        let constants = [
+            ("ANY_LIT", self.lit),
+            ("ANY_GRADIENT", self.gradient),
+            ("ANY_SCATTERING", self.scattering),
+            ("ANY_OFTEN", self.often),
+            ("ANY_LEANING", self.leaning),
+            ("ANY_HIGHLIGHT", self.highlights),
+        ];
+        let mut text = String::new();
+        for (name, value) in constants {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "const {name} = {value};");
+        }
+        ("lighting", text)
+    }
+}
