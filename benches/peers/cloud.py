@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How far VTK's volumetric scattering is from the light in a cloud, path traced: the reference of `cargo bench --bench volumes`.
 
-    target/peers/venv/bin/python benches/peers/cloud.py TRUTH/images
+    target/peers/venv/bin/python benches/peers/cloud.py TRUTH/images [FOLDER FOR PICTURES]
 
 Runs inside the venv that compare.py makes. VTK knows no irradiance, so the errors that say something are those after the best factor
 for each channel. The scene is the one of the truth's README: orthographic from +z, light along (-2, -1, -1).
