@@ -10,6 +10,8 @@
 //!                           │                        ▼
 //!                           │  passes::classify   buffers, textures
 //!                           ├─────────────────▶ lookup tables, bricks
+//!                           │                        ▼
+//!                           ├─── lights ───▶ light volumes, G-buffers ──▶ scattered light   when a light turns, or what it meets changes
 //!                           ▼                        ▼
 //!                  camera, lights ──▶ surface ──▶ raycast ──▶ tonemap     each frame
 //!                                     radiance,   radiance    PNG
