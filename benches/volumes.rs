@@ -190,7 +190,7 @@ fn reference(bytes: &[u8]) -> Vec<DVec3> {
     let head = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
     let pixels: Vec<DVec3> = bytes[head..]
         .chunks_exact(12)
-        .map(|pixel| bytemuck::pod_read_unaligned::<[f32; 3]>(pixel))
+        .map(bytemuck::pod_read_unaligned::<[f32; 3]>)
         .map(|pixel| Vec3::from(pixel).as_dvec3())
         .collect();
     assert_eq!(pixels.len(), SIDE * SIDE);
