@@ -23,7 +23,6 @@ use crate::loading::LoadedVolume;
 use crate::render::Failure;
 use crate::view::lights_in_order;
 use crate::{mirrors::mirror, report::Report};
-use bevy_ecs::change_detection::Tick;
 use bevy_ecs::prelude::*;
 use glam::{DAffine3, DVec3, UVec3};
 use medium::Medium;
@@ -56,7 +55,7 @@ struct Recipe {
     /// Scene units that light travels from slice to slice.
     slice: f64,
     volume: wgpu::TextureView,
-    classified: Tick,
+    classified: u64,
     shadow: Option<Shadow>,
 }
 
@@ -100,7 +99,7 @@ type Volumes<'w, 's> = Query<
     (
         Entity,
         &'static LoadedVolume,
-        Ref<'static, Classified>,
+        &'static Classified,
         &'static VolumeTexture,
         &'static Placement,
         &'static VolumeLighting,
@@ -144,7 +143,7 @@ pub(crate) fn run(
                 sweep,
                 slice,
                 volume: texture.view.clone(),
-                classified: classified.last_changed(),
+                classified: classified.versions.extinction,
                 shadow: shadow.flatten(),
             };
             let found =
@@ -155,7 +154,7 @@ pub(crate) fn run(
                 continue;
             }
             let timing = timer.as_mut().and_then(|timer| timer.time_compute("light_volume"));
-            let source = Source { loaded, classified: &classified, texture, texture_from_scene };
+            let source = Source { loaded, classified, texture, texture_from_scene };
             match make(&gpu, &mut sweeper, &mut gbuffer, &source, &recipe, timing, &mut report) {
                 Ok(grid) => {
                     sweeper.version += 1;

@@ -92,7 +92,7 @@ mirror! {
 /// The bindings of the kernels in front of those of the light volume.
 const FIXED_BINDINGS: usize = 6;
 
-/// An axis that counts for less is not swept.
+/// An axis that would count for less is not swept, and all others count for less by as much, so that it sets in from nothing.
 const LEAST_WEIGHT: f64 = 0.002;
 
 /// The weight of an axis from which on its flux counts by half.
@@ -109,12 +109,10 @@ impl AxisSweep {
         let VolumeLighting::LightVolume { cone_angle, blend, g, .. } = *lighting else { return Vec::new() };
         let in_cells = direction * cells.as_dvec3();
         let nearest = in_cells.abs().max_position();
-        let shares = in_cells * in_cells / in_cells.length_squared();
-        let counts = |axis: usize| match blend {
-            true => shares[axis] > LEAST_WEIGHT,
-            false => axis == nearest,
+        let shares = match blend {
+            true => (in_cells * in_cells / in_cells.length_squared() - LEAST_WEIGHT).max(DVec3::ZERO),
+            false => DVec3::AXES[nearest],
         };
-        let total: f64 = (0..3).filter(|axis| counts(*axis)).map(|axis| shares[axis]).sum();
         let axes = scene_from_texture.matrix3;
         let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
         let light = scene_from_texture.transform_vector3(direction).normalize();
@@ -129,10 +127,10 @@ impl AxisSweep {
             lengths: DVec3::from_array([0, 1, 2].map(|axis| axes[axis].length() / f64::from(cells[axis]))),
             mu0: light.dot(axes[axis].normalize()).abs(),
             g,
-            weight: shares[axis] / total,
+            weight: shares[axis] / shares.element_sum(),
             width,
         };
-        (0..3).filter(|axis| counts(*axis)).map(sweep).collect()
+        (0..3).filter(|axis| shares[*axis] > 0.0).map(sweep).collect()
     }
 
     /// Cells across and along.
