@@ -103,7 +103,7 @@ fn an_edit_reruns_what_depends_on_it_and_nothing_else() {
     step(
         "turning the volume",
         &[("(translation: (0.0, 0.0, 0.0))", "(rotation: (0.0, 10.0, 20.0))")],
-        [0, 2, 0, 6, 1],
+        [0, 2, 0, 5, 1],
     );
     step("growing the volume", &[("(translation: (0.0, 0.0, 0.0))", "(scale: 2.0)")], [0, 2, 0, 4, 1]);
     step(
@@ -241,7 +241,7 @@ fn a_picture_does_not_depend_on_the_scenes_before_it() {
         ]),
     ]
     .into();
-    let fresh: Vec<_> = states.iter().map(|state| self::studio().radiance(state, 16, 16)).collect();
+    let fresh: Vec<_> = states.iter().map(|state| studio().radiance(state, 16, 16)).collect();
     let mut studio = studio();
     let (mut at, mut changes) = (0, Vec::new());
     for step in 0..60 {

@@ -4,6 +4,7 @@
 mod support;
 
 use glam::DVec3;
+use std::collections::HashSet;
 use std::f64::consts::PI;
 use support::Studio;
 
@@ -15,7 +16,7 @@ struct Case {
     eye: &'static str,
     lights: String,
     transform: String,
-    file: &'static str,
+    file: String,
     size: [u32; 3],
     spacing: String,
     function: String,
@@ -47,7 +48,7 @@ impl Case {
             eye: "",
             lights: sun("(-0.5, -0.6, -0.7)"),
             transform: String::new(),
-            file: "even.raw",
+            file: file_of([8; 3]),
             size: [8, 8, 8],
             spacing: "(1.0, 1.0, 1.0)".into(),
             function: WHITE.into(),
@@ -74,6 +75,11 @@ fn lightings(g: f64, resolution: f64) -> [String; 2] {
     ]
 }
 
+/// The file of an even volume.
+fn file_of(size: [u32; 3]) -> String {
+    if size == [8; 3] { "even.raw".into() } else { format!("{size:?}.raw") }
+}
+
 fn check(cases: &[Case]) {
     let mut studio = Studio::new();
     studio.volume("even.raw", [8; 3], |_| 0.5);
@@ -87,7 +93,10 @@ fn check(cases: &[Case]) {
         _ => 0.5,
     });
     studio.volume("nothing.raw", [8; 3], |_| f32::NAN);
-    studio.volume("long.raw", [2048, 1, 1], |_| 0.5);
+    let sizes: HashSet<_> = cases.iter().map(|case| case.size).filter(|size| *size != [8; 3]).collect();
+    for size in sizes {
+        studio.volume(&file_of(size), size.map(|side| side as usize), |_| 0.5);
+    }
     let mut complaints = Vec::new();
     let mut brightest = (0.0, String::new());
     for case in cases {
@@ -152,7 +161,7 @@ fn any_medium_gives_numbers() {
         for file in ["even.raw", "checkered.raw", "odd.raw", "nothing.raw"] {
             for lighting in lightings(0.0, 1.0) {
                 let case = Case::new(format!("{lighting}, {file} {name}"));
-                cases.push(Case { file, lighting, function: function.into(), ..case });
+                cases.push(Case { file: file.into(), lighting, function: function.into(), ..case });
             }
         }
     }
@@ -170,13 +179,20 @@ fn any_shape_gives_numbers() {
             for light in lights {
                 let name = format!("{size:?} at {resolution} in {light}");
                 let lighting = format!("LightVolume(resolution: {resolution:?}, g: 0.5)");
-                cases.push(Case { size, lights: sun(light), lighting, bound: bound(0.5), ..Case::new(name) });
+                cases.push(Case {
+                    file: file_of(size),
+                    size,
+                    lights: sun(light),
+                    lighting,
+                    bound: bound(0.5),
+                    ..Case::new(name)
+                });
             }
         }
     }
     for light in lights {
         let name = format!("a long one in {light}");
-        let file = "long.raw";
+        let file = file_of([2048, 1, 1]);
         cases.push(Case { file, size: [2048, 1, 1], lights: sun(light), ..Case::new(name) });
         for spacing in ["(1.0, 1.0, 1000.0)", "(1.0, 1000.0, 1.0)", "(1000.0, 1.0, 0.1)", "(1e-3, 1.0, 1.0)"]
         {
@@ -240,7 +256,7 @@ fn light_from_anywhere_gives_numbers() {
                 "\"sun\": ( DirectionalLight: (direction: (1.0, 2.0, 3.0), irradiance: ({irradiance}, {irradiance}, 0.0)) ),"
             );
             let name = format!("{lighting} of {irradiance}");
-            let file = "checkered.raw";
+            let file = "checkered.raw".into();
             cases.push(Case { file, lights, lighting: lighting.into(), bound: 1e7, ..Case::new(name) });
         }
         for count in [0, 8] {
