@@ -159,9 +159,11 @@ fn any_medium_gives_numbers() {
     ];
     for (name, function) in functions {
         for file in ["even.raw", "checkered.raw", "odd.raw", "nothing.raw"] {
+            // In hollows between white walls light may gather.
+            let bound = if file == "even.raw" { bound(0.0) } else { 20.0 };
             for lighting in lightings(0.0, 1.0) {
                 let case = Case::new(format!("{lighting}, {file} {name}"));
-                cases.push(Case { file: file.into(), lighting, function: function.into(), ..case });
+                cases.push(Case { file: file.into(), lighting, function: function.into(), bound, ..case });
             }
         }
     }
