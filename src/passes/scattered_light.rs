@@ -110,6 +110,7 @@ impl AxisSweep {
             true => (in_cells * in_cells / in_cells.length_squared() - LEAST_WEIGHT).max(DVec3::ZERO),
             false => DVec3::AXES[nearest],
         };
+        let shares = shares / shares.element_sum();
         let axes = scene_from_texture.matrix3;
         let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
         let light = scene_from_texture.transform_vector3(direction).normalize();
