@@ -394,7 +394,6 @@ fn nothing_returns_more_light_than_it_receives() {
                 }
             }
         }
-    }
         eprintln!("worst excess: {worst:?}");
         assert!(worst.0 < most, "{worst:?}");
     }

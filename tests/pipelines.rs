@@ -99,7 +99,8 @@ fn check(scene: &std::path::Path, text: &str, expected: impl Fn(bool) -> Vec<&'s
         app.update();
         let mut made = app.world().resource::<Report>().pipelines.clone();
         let mut expected = expected(portable);
-        (made.sort_unstable(), expected.sort_unstable());
+        made.sort_unstable();
+        expected.sort_unstable();
         assert_eq!(made, expected, "portable: {portable}");
         render::render(&mut app).unwrap();
     }
