@@ -69,7 +69,7 @@ fn sweep(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     let after = before + (source - before) * depth * mean;
     faces[2u * ((here & 1u) * columns + index)] = vec4f(after, spread_in(cell));
     let out = (at.z * sweep_of.cells.y + at.y) * sweep_of.cells.x + at.x;
-    towards_eye[out] += vec4f(sweep_of.weight * (source + (before - source) * mean), 0.0);
+    towards_eye[out] += vec4f(sweep_of.shares[sweep_of.axis] * (source + (before - source) * mean), 0.0);
 }
 
 @compute @workgroup_size(64)

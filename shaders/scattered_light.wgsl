@@ -14,6 +14,13 @@
 // For each cell: fluence, and flux along the axes of the volume.
 @group(0) @binding(5) var<storage, read_write> scattered: array<vec4f>;
 
+// Optical depths are told apart up to this, and in a cell from this on.
+const DEEPEST = 1e9;
+const LEAST_RISE = 0.1;
+
+// The weight of an axis from which on its flux counts by half: the axes share the fluence, but each has all of the flux along it.
+const HALF_FLUX = 0.02;
+
 // T' over the width of a cell.
 fn beam_at(across: vec2u, along: u32, beam: vec3f) -> vec3f {
     var sum = vec3f(0.0);
@@ -23,6 +30,60 @@ fn beam_at(across: vec2u, along: u32, beam: vec3f) -> vec3f {
         sum += 0.25 * light_seen(0u, place) * exp(-light_depth(0u, place) * beam);
     }
     return sum;
+}
+
+// How much this axis counts in a cell: the more the light leans to it, and the faster it fades along it. Along a surface that it does not
+// enter through light would be shut in, as nothing leaves a sweep aside but what spreads.
+fn weight_in(across: vec2u, along: u32) -> f32 {
+    let place = place_of(vec2f(across) + 0.5, f32(along) + 0.5);
+    var weights = vec3f(0.0);
+    for (var axis = 0u; axis < 3u; axis += 1u) {
+        var half = vec3f(0.0);
+        half[axis] = 0.5 / f32(sweep_of.cells[axis]);
+        let rise = min(light_depth(0u, place + half), DEEPEST) - min(light_depth(0u, place - half), DEEPEST);
+        weights[axis] = sweep_of.shares[axis] * (rise * rise + LEAST_RISE * LEAST_RISE);
+    }
+    return weights[sweep_of.axis] / (weights.x + weights.y + weights.z);
+}
+
+// Where in 0..1 between the ends of a cell of the optical depth `tau` the mean is of what is seen of it from one end.
+fn seen_depth(tau: f32) -> f32 {
+    let thick = clamp(tau, 0.1, 80.0);
+    return select(1.0 / max(tau, 0.1) - 1.0 / (exp(thick) - 1.0), 0.5 - tau / 12.0, tau < 0.2);
+}
+
+// The mean over the thickness of a cell as it is seen from where there is less.
+fn seen_mean(a: vec3f, b: vec3f, tau: f32) -> vec3f {
+    return mix(min(a, b), max(a, b), seen_depth(tau));
+}
+
+// Both streams at a face behind a slice, of a cell that has something behind.
+fn both_at(across: vec2i, face: u32) -> vec4f {
+    let n = vec2i(extent().xy);
+    let index = 2u * (face * u32(n.x * n.y) + u32(across.y * n.x + across.x));
+    return faces[index] + vec4f(faces[index + 1u].rgb, 0.0);
+}
+
+// The share of the light in a cell that is seen of it from aside. On its sides there is what diffuses there from both, and on those of the
+// volume what Marshak's condition leaves.
+fn seen_beside(across: vec2u, cell: vec4f, face: u32) -> vec3f {
+    let n = vec2i(extent().xy);
+    let own = both_at(vec2i(across), face);
+    let turned = cell.a * (1.0 - dot(cell.rgb, vec3f(1.0 / 3.0)) * sweep_of.g);
+    var share = vec3f(1.0);
+    for (var side = 0; side < 4; side += 1) {
+        let is_first = side < 2;
+        let there = vec2i(across) + select(vec2i(0, 1), vec2i(1, 0), is_first) * (2 * (side & 1) - 1);
+        let length = select(sweep_of.across.y, sweep_of.across.x, is_first);
+        var edge = vec3f(1.0 / (1.0 + 0.75 * turned * length));
+        if all(there >= vec2i(0)) && all(there < n) {
+            let other = both_at(there, face);
+            let most = max(own.rgb, vec3f(1e-30));
+            edge = mix(min(other.rgb, most) / most, vec3f(1.0), own.a / max(own.a + other.a, 1e-30));
+        }
+        share *= mix(edge, vec3f(1.0), 2.0 * seen_depth(cell.a * length));
+    }
+    return share;
 }
 
 @compute @workgroup_size(64)
@@ -84,11 +145,15 @@ fn back(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
     faces[face] = vec4f(near.backward, spread_in(cell));
     faces[face + 1u] = vec4f(near.forward, 0.0);
 
-    let fluence = 0.5 * (near.forward + near.backward + far.forward + far.backward) / TWO_STREAM_MU1;
+    var fluence = seen_mean(near.forward + near.backward, far.forward + far.backward, cell.a * sweep_of.along) / TWO_STREAM_MU1;
+    if !is_last {
+        fluence *= seen_beside(across, cell, behind);
+    }
     let flux = 0.5 * (near.forward - near.backward + far.forward - far.backward);
     let along = select(-1.0, 1.0, sweep_of.forwards == 1u) * dot(flux, vec3f(1.0 / 3.0));
+    let weight = weight_in(across, here);
     let place = cell_of(across, here);
     let out = 2u * ((place.z * sweep_of.cells.y + place.y) * sweep_of.cells.x + place.x);
-    scattered[out] += vec4f(sweep_of.weight * fluence, 0.0);
-    scattered[out + 1u] += vec4f(sweep_of.flux_weight * along * unrolled(vec3f(0.0, 0.0, 1.0)), 0.0);
+    scattered[out] += vec4f(weight * fluence, 0.0);
+    scattered[out + 1u] += vec4f(weight / (weight + HALF_FLUX) * along * unrolled(vec3f(0.0, 0.0, 1.0)), 0.0);
 }

@@ -34,5 +34,7 @@ fn add_up(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gro
     let mean = dot(sum, vec3f(1.0 / 3.0));
     let cell = vec3u(index % n.x, (index / n.x) % n.y, index / (n.x * n.y));
     textureStore(fluence, cell, vec4f(sum, 0.0));
-    textureStore(flux, cell, vec4f(along / max(mean, 1e-30), 0.0));
+    // No more can go one way than there is.
+    let share = along / max(mean, 1e-30);
+    textureStore(flux, cell, vec4f(share / max(length(share), 1.0), 0.0));
 }

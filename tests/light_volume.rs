@@ -4,6 +4,8 @@
 mod support;
 
 use support::{Studio, middle};
+use tyndall::optics::phase::henyey_greenstein;
+use tyndall::optics::two_stream::{Cone, Slab, Streams, radiance_source};
 
 /// A slab 1 mm thick and so wide that its sides do not count, across z, lit from above.
 fn slab(studio: &Studio, voxels: usize, tau: f64, albedo: f64, lighting: &str) -> String {
@@ -223,4 +225,62 @@ fn slabs_reflect_and_transmit_what_they_should() {
     let errors = [mean(&|row| (row.2[0] / row.0 - 1.0).abs()), mean(&|row| (row.2[1] / row.1 - 1.0).abs())];
     eprintln!("mean relative errors of reflectance and scattered transmittance: {errors:?}");
     assert!(errors[0] < 0.06 && errors[1] < 0.1, "{errors:?}");
+}
+
+/// A ray into a slab whose layers are as thick as the cells of its scattered light.
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn light_in_a_column_is_what_its_twin_in_64_bits_says() {
+    const CELLS: usize = 32;
+    let mut studio = Studio::new();
+    let mut worst = (0.0, String::new());
+    for (tau, albedo, g, mu0) in [
+        (0.5, 1.0, 0.0, 1.0),
+        (3.0, 1.0, 0.0, 0.5),
+        (3.0, 0.9, 0.5, 1.0),
+        (3.0, 0.5, -0.5, 0.8),
+        (10.0, 1.0, 0.5, 0.5),
+    ] {
+        let slab = Slab { tau, albedo, g, mu0 };
+        let (_, streams) = slab.layers(CELLS);
+        let text =
+            self::slab(&studio, 4 * CELLS, tau, albedo, &format!("LightVolume(g: {g:?}, blend: false)"));
+        let beam = Cone::new(g).beam(albedo);
+        for (mu, side) in [(1.0, 1.0), (0.5, 1.0), (1.0, -1.0), (0.5, -1.0)] {
+            let (sine0, sine) = (f64::sqrt(1.0 - mu0 * mu0), f64::sqrt(1.0 - mu * mu));
+            let scene = format!(
+                "(entities: {{ {} {text} \"light\": ( DirectionalLight: (direction: ({sine0:?}, 0.0, {:?})) ) }})",
+                eye([0.0, sine, side * mu]),
+                -mu0
+            );
+            let seen = f64::from(middle(&studio.radiance(&scene, 1, 1))[0]);
+            // Light goes down: the cosine between it and the way to the eye.
+            let phase = henyey_greenstein(-side * mu * mu0, g);
+            const STEPS: usize = 6400;
+            let expected: f64 = (0..STEPS)
+                .map(|step| {
+                    let depth = (step as f64 + 0.5) / STEPS as f64;
+                    // What a cell holds is that in its middle, and linear between.
+                    let cell = (depth * CELLS as f64 - 0.5).clamp(0.0, CELLS as f64 - 1.0);
+                    let low = (cell as usize).min(CELLS - 2);
+                    let weights = [1.0 - (cell - low as f64), 1.0, cell - low as f64];
+                    let mix = |part: fn(&Streams) -> f64| {
+                        (0..3).map(|face| 0.5 * weights[face] * part(&streams[low + face])).sum()
+                    };
+                    let streams = Streams { forward: mix(|at| at.forward), backward: mix(|at| at.backward) };
+                    let left = (-beam * tau * depth / mu0).exp();
+                    let way = if side > 0.0 { depth } else { 1.0 - depth };
+                    radiance_source(albedo, g, phase, left, streams, -side * mu) * (-tau * way / mu).exp()
+                })
+                .sum::<f64>()
+                * tau
+                / (mu * STEPS as f64);
+            let error = (seen / expected - 1.0).abs();
+            if error > worst.0 {
+                worst = (error, format!("{slab:?} seen at {mu} from {side}: {seen}, expected {expected}"));
+            }
+        }
+    }
+    eprintln!("worst relative error: {worst:?}");
+    assert!(worst.0 < 0.01, "{worst:?}");
 }

@@ -130,6 +130,7 @@ fn every_field_of_every_component_can_be_written() {
         millimetres_per_unit: 10.0,
         background: Vec3::new(0.1, 0.2, 0.3),
         shading: Shading::Local,
+        ..Default::default()
     };
     assert_eq!(*settings, expected);
     let camera = ViewCamera {

@@ -8,15 +8,14 @@ struct ScatterSweep {
     cells: vec3u,
     // The axis of the sweep, and whether light goes up it.
     axis: u32,
-    // Length of a cell across and along, scene units.
-    across: vec2f,
+    // How much the light leans to each axis; 0 for those that are not swept.
+    shares: vec3f,
+    // Length of a cell along and across, scene units.
     along: f32,
+    across: vec2f,
     // Cosine between light and axis.
     mu0: f32,
     g: f32,
-    // How much what this axis gives counts: of fluence, and of flux along it.
-    weight: f32,
-    flux_weight: f32,
     forwards: u32,
     // Variance across for a slice of the mean free path 1, in its unit times the slice's.
     spread: f32,

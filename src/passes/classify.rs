@@ -2,7 +2,7 @@
 //!
 //! Reads components and the ranges of bricks; writes [`Classified`]: a table of colour and extinction, and for each brick of 8^3
 //! voxels how far the nearest one is that holds anything. Reruns for a volume when its transfer function, data, or the unit of the scene
-//! changes.
+//! changes; what depends on part of it goes by the [`Versions`] of that part.
 
 use crate::components::{Classification, SceneSettings, TransferFunction, Volume};
 use crate::gpu::VolumeFormat;
@@ -26,6 +26,17 @@ pub(crate) struct Classified {
     pub classification: Classification,
     /// The table's extinction and layers added up from its lower end: the optical depth of segments of any length.
     pub cumulative: Cumulative,
+    /// Which of all there have been.
+    pub versions: Versions,
+}
+
+/// What a classification is compared by: each counts up whenever its part differs from what it was.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Versions {
+    /// Extinction by data value, and the bricks that hold any.
+    pub extinction: u64,
+    /// The same, and colours.
+    pub table: u64,
 }
 
 impl Classified {
@@ -34,24 +45,43 @@ impl Classified {
         let (low, high) = self.domain;
         (format.scale / (high - low), (format.offset - low) / (high - low))
     }
+
+    /// With the versions of what stood here before, as far as it is the same; `next` where it is not.
+    fn versioned(self, former: Option<&Self>, next: u64) -> Self {
+        let next = Versions { extinction: next, table: next };
+        let versions = former.map_or(next, |former| {
+            let same_extinction = self.cumulative == former.cumulative
+                && (self.domain, &self.distances) == (former.domain, &former.distances);
+            let same_table = same_extinction && self.table == former.table;
+            Versions {
+                extinction: if same_extinction { former.versions.extinction } else { next.extinction },
+                table: if same_table { former.versions.table } else { next.table },
+            }
+        });
+        Self { versions, ..self }
+    }
 }
 
 type Changes = Or<(Changed<TransferFunction>, Changed<LoadedVolume>)>;
 
 pub(crate) fn classify(
     mut commands: Commands,
-    volumes: Query<(Entity, Ref<TransferFunction>, Ref<LoadedVolume>), With<Volume>>,
+    volumes: Query<(Entity, &TransferFunction, &LoadedVolume, Option<&Classified>), With<Volume>>,
     changed: Query<(), Changes>,
     settings: Res<SceneSettings>,
+    (mut unit, mut version): (Local<f32>, Local<u64>),
     mut report: ResMut<Report>,
 ) {
-    for (entity, function, volume) in &volumes {
-        if !changed.contains(entity) && !settings.is_changed() {
+    let has_other_unit =
+        std::mem::replace(&mut *unit, settings.millimetres_per_unit) != settings.millimetres_per_unit;
+    for (entity, function, volume, former) in &volumes {
+        if !changed.contains(entity) && !has_other_unit {
             continue;
         }
+        *version += 1;
         let domain = volume.domain(function.domain);
         let voxel = volume.data.spacing.min_element();
-        let table = LookupTable::new(&function, domain, voxel, settings.millimetres_per_unit);
+        let table = LookupTable::new(function, domain, voxel, settings.millimetres_per_unit);
         let bricks = &volume.data.bricks;
         let held = table.holds_something();
         let occupied: Vec<bool> = bricks
@@ -62,14 +92,16 @@ pub(crate) fn classify(
         let distances = distances(bricks.size, &occupied);
         report
             .ran("classify", &[("entries", table.entries.len() as u64), ("bricks", distances.len() as u64)]);
-        commands.entity(entity).insert(Classified {
+        let classified = Classified {
             cumulative: table.cumulative(),
             table,
             domain,
             bricks: bricks.size,
             distances,
             classification: function.classification,
-        });
+            versions: Versions::default(),
+        };
+        commands.entity(entity).insert(classified.versioned(former, *version));
     }
 }
 

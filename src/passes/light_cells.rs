@@ -15,7 +15,6 @@ use crate::gpu::{
 use crate::loading::LoadedVolume;
 use crate::render::Failure;
 use crate::{mirrors::mirror, report::Report};
-use bevy_ecs::change_detection::Tick;
 use bevy_ecs::prelude::*;
 use glam::UVec3;
 
@@ -34,7 +33,7 @@ pub(crate) struct LightCells {
 struct Recipe {
     cells: UVec3,
     volume: wgpu::TextureView,
-    classified: Tick,
+    classified: u64,
 }
 
 /// What the pass keeps between frames.
@@ -69,7 +68,7 @@ type Volumes<'w, 's> = Query<
     (
         Entity,
         &'static LoadedVolume,
-        Ref<'static, Classified>,
+        &'static Classified,
         &'static VolumeTexture,
         &'static VolumeLighting,
         Option<&'static Shading>,
@@ -97,13 +96,13 @@ pub(crate) fn run(
             continue;
         }
         let cells = UVec3::from(loaded.data.size.map(|voxels| cells_along(voxels, resolution)));
-        let recipe = Recipe { cells, volume: texture.view.clone(), classified: classified.last_changed() };
+        let recipe = Recipe { cells, volume: texture.view.clone(), classified: classified.versions.table };
         if let Some(kept) = kept.filter(|kept| kept.recipe == recipe) {
             held += kept.grid.bytes();
             continue;
         }
         let timing = timer.as_mut().and_then(|timer| timer.time_compute("light_cells"));
-        let volume = (loaded, &*classified, texture);
+        let volume = (loaded, classified, texture);
         match make(&gpu, &mut averager, volume, cells, timing, &mut report) {
             Ok(grid) => {
                 averager.version += 1;

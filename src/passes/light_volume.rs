@@ -20,7 +20,6 @@ use crate::loading::LoadedVolume;
 use crate::render::Failure;
 use crate::view::lights_in_order;
 use crate::{mirrors::mirror, report::Report};
-use bevy_ecs::change_detection::Tick;
 use bevy_ecs::prelude::*;
 use glam::{DAffine3, DVec3, UVec3};
 use medium::Medium;
@@ -52,7 +51,7 @@ struct Recipe {
     /// Scene units that light travels from slice to slice.
     slice: f64,
     volume: wgpu::TextureView,
-    classified: Tick,
+    classified: u64,
 }
 
 /// What the pass keeps between frames.
@@ -95,7 +94,7 @@ type Volumes<'w, 's> = Query<
     (
         Entity,
         &'static LoadedVolume,
-        Ref<'static, Classified>,
+        &'static Classified,
         &'static VolumeTexture,
         &'static Placement,
         &'static VolumeLighting,
@@ -132,8 +131,9 @@ pub(crate) fn run(
             let direction = texture_from_scene.transform_vector3(-*to_light);
             let sweep = Sweep::new(cells, direction);
             let slice = scene_from_texture.transform_vector3(sweep.step()).length();
+            let classified_version = classified.versions.extinction;
             let recipe =
-                Recipe { sweep, slice, volume: texture.view.clone(), classified: classified.last_changed() };
+                Recipe { sweep, slice, volume: texture.view.clone(), classified: classified_version };
             let found =
                 old.iter().position(|volume| volume.light == *light).map(|index| old.swap_remove(index));
             if let Some(found) = found.filter(|found| found.recipe == recipe) {
@@ -142,7 +142,7 @@ pub(crate) fn run(
                 continue;
             }
             let timing = timer.as_mut().and_then(|timer| timer.time_compute("light_volume"));
-            let volume = (loaded, &*classified, texture);
+            let volume = (loaded, classified, texture);
             match make(&gpu, &mut sweeper, volume, &recipe, timing, &mut report) {
                 Ok(grid) => {
                     sweeper.version += 1;

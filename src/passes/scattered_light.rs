@@ -1,8 +1,8 @@
 //! Light that was scattered before, in the cells of a volume: sweeps away from each light and back.
 //!
 //! Reads [`LightCells`] and [`LightVolumes`]; writes [`ScatteredLight`]: for each light and cell a vec4f of the fluence and one of the flux along the
-//! volume's axes, for an irradiance of 1. Each axis that the light leans to is swept, the more it counts the more the light follows it (counted
-//! in cells), so that nothing jumps where the nearest axis changes. Reruns when what it reads changes, or the cone of the lighting.
+//! volume's axes, for an irradiance of 1. Each axis that the light leans to is swept. It counts in a cell the more the light follows it (counted in
+//! cells), so that nothing jumps where the nearest axis changes, and the faster the light fades along it there, as across a surface. Reruns when what it reads changes, or the cone of the lighting.
 
 use super::light_cells::LightCells;
 use super::light_volume::lookup;
@@ -18,7 +18,7 @@ use crate::render::Failure;
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
 use encase::ShaderSize;
-use glam::{DAffine3, DVec3, UVec3, Vec2};
+use glam::{DAffine3, DVec3, UVec3, Vec2, Vec3};
 
 /// What each light scatters into the cells of a volume, in the order of the lights.
 #[derive(Component, Debug, Default)]
@@ -54,7 +54,8 @@ pub(crate) struct AxisSweep {
     lengths: DVec3,
     mu0: f64,
     g: f32,
-    weight: f64,
+    /// How much light leans to each axis.
+    shares: DVec3,
     /// The width of the cone, as a multiple of what light does.
     width: f64,
 }
@@ -73,12 +74,11 @@ mirror! {
     pub(crate) struct ScatterSweepUniform as "ScatterSweep" {
         cells: UVec3,
         axis: u32,
-        across: Vec2,
+        shares: Vec3,
         along: f32,
+        across: Vec2,
         mu0: f32,
         g: f32,
-        weight: f32,
-        flux_weight: f32,
         forwards: u32,
         spread: f32,
     }
@@ -95,11 +95,8 @@ mirror! {
 /// The bindings of the kernels in front of those of the light volume.
 const FIXED_BINDINGS: usize = 6;
 
-/// An axis that counts for less is not swept.
+/// An axis that would count for less is not swept, and all others count for less by as much, so that it sets in from nothing.
 const LEAST_WEIGHT: f64 = 0.002;
-
-/// The weight of an axis from which on its flux counts by half.
-const HALF_FLUX: f64 = 0.02;
 
 impl AxisSweep {
     /// The sweeps for light that travels in a direction, given in the texture's space.
@@ -112,12 +109,11 @@ impl AxisSweep {
         let VolumeLighting::LightVolume { cone_angle, blend, g, .. } = *lighting else { return Vec::new() };
         let in_cells = direction * cells.as_dvec3();
         let nearest = in_cells.abs().max_position();
-        let shares = in_cells * in_cells / in_cells.length_squared();
-        let counts = |axis: usize| match blend {
-            true => shares[axis] > LEAST_WEIGHT,
-            false => axis == nearest,
+        let shares = match blend {
+            true => (in_cells * in_cells / in_cells.length_squared() - LEAST_WEIGHT).max(DVec3::ZERO),
+            false => DVec3::AXES[nearest],
         };
-        let total: f64 = (0..3).filter(|axis| counts(*axis)).map(|axis| shares[axis]).sum();
+        let shares = shares / shares.element_sum();
         let axes = scene_from_texture.matrix3;
         let axes = [axes.x_axis, axes.y_axis, axes.z_axis];
         let light = scene_from_texture.transform_vector3(direction).normalize();
@@ -132,10 +128,10 @@ impl AxisSweep {
             lengths: DVec3::from_array([0, 1, 2].map(|axis| axes[axis].length() / f64::from(cells[axis]))),
             mu0: light.dot(axes[axis].normalize()).abs(),
             g,
-            weight: shares[axis] / total,
+            shares,
             width,
         };
-        (0..3).filter(|axis| counts(*axis)).map(sweep).collect()
+        (0..3).filter(|axis| shares[*axis] > 0.0).map(sweep).collect()
     }
 
     /// Cells across and along.
@@ -167,12 +163,11 @@ impl AxisSweep {
         ScatterSweepUniform {
             cells: self.cells,
             axis: self.axis as u32,
+            shares: self.shares.as_vec3(),
             across: glam::DVec2::new(self.lengths[b], self.lengths[c]).as_vec2(),
             along: self.lengths[self.axis] as f32,
             mu0: self.mu0 as f32,
             g: self.g,
-            weight: self.weight as f32,
-            flux_weight: (self.weight / (self.weight + HALF_FLUX)) as f32,
             forwards: u32::from(self.forwards),
             spread: (2.0 / (3.0 * MU1) * self.width * self.width) as f32,
         }
