@@ -114,7 +114,7 @@ fn an_edit_reruns_what_depends_on_it_and_nothing_else() {
     // The light `a` comes from +z, `b` from -x and -y.
     step("a mesh beside the light", &[("(30.0, 0.0, 0.0)", "(30.0, 0.0, 1.0)")], nothing);
     step("a mesh behind the volume", &[("(30.0, 0.0, 0.0)", "(0.0, 0.0, -30.0)")], nothing);
-    step("a mesh in one light", &[("(30.0, 0.0, 0.0)", "(0.0, 0.0, 30.0)")], [0, 1, 0, 1, 1]);
+    step("a mesh in one light", &[("(30.0, 0.0, 0.0)", "(0.0, 0.0, 30.0)")], [0, 0, 0, 1, 1]);
     step(
         "a mesh in it that counts for nothing",
         &[
@@ -140,6 +140,24 @@ fn an_edit_reruns_what_depends_on_it_and_nothing_else() {
         [0, 1, 0, 1, 1],
     );
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn shadows_of_meshes_are_drawn_when_one_moves_in_a_light() {
+    let mut studio = studio();
+    let mut drawn = |edits: &[(&str, &str)]| {
+        studio.radiance(&edited(edits), 24, 24);
+        studio.report().passes.get("volume_shadow").map_or(0, |record| record.runs)
+    };
+    assert_eq!(drawn(&[]), 0);
+    let above = ("(30.0, 0.0, 0.0)", "(0.0, 0.0, 30.0)");
+    assert_eq!(drawn(&[above]), 1);
+    assert_eq!(drawn(&[above, ("(0.0, 0.0, 40.0)", "(1.0, 0.0, 40.0)")]), 1);
+    assert_eq!(drawn(&[above, ("(0.5, 0.9, 0.2), 0.3)", "(0.5, 0.9, 0.2), 0.4)")]), 1);
+    assert_eq!(drawn(&[("(30.0, 0.0, 0.0)", "(1.0, 0.0, 30.0)")]), 2);
+    assert_eq!(drawn(&[]), 2);
+    assert!(!studio.report().gpu_bytes.contains_key("volume_shadow"));
 }
 
 /// What the GPU holds of light.

@@ -53,14 +53,17 @@ fn every_pass_has_valid_pipelines_and_bindings() {
 }
 
 /// A pipeline for each use: volumes with and without a mesh in their light; sweeps away from the light and back.
-const EXPECTED_OF_LIGHT: [&str; 14] = [
+const EXPECTED_OF_LIGHT: [&str; 17] = [
     "gbuffer",
-    "light_volume",
     "light_volume",
     "light_cells",
     "scattered_light",
     "scattered_light",
+    "scattered_light",
+    "scattered_light",
     "summed_light",
+    "eye_light",
+    "eye_light",
     "dimmed_gbuffer",
     "scattered_radiosity",
     "combine",
@@ -80,7 +83,7 @@ fn every_pass_of_light_in_volumes_has_valid_pipelines_and_bindings() {
         \"wax\": ( Transform: (translation: (0.0, 0.0, -9.0)), Mesh: Sphere(), Subsurface: () ),
         \"a\": ( Volume: Raw(path: \"v.raw\", size: (4, 4, 4)), VolumeLighting: SingleScattering(g: 0.5) ),
         \"b\": ( Volume: Raw(path: \"v.raw\", size: (4, 4, 4)), VolumeLighting: LightVolume(g: -0.3, gradient_specular: 0.5) ),
-        \"c\": ( Transform: (translation: (20.0, 0.0, 0.0)), Volume: Raw(path: \"v.raw\", size: (4, 4, 1), format: F32), VolumeLighting: LightVolume() ) })";
+        \"c\": ( Transform: (translation: (20.0, 0.0, 0.0)), Volume: Raw(path: \"v.raw\", size: (4, 4, 1), format: F32), VolumeLighting: LightVolume(g: 0.3, towards_eye: true) ) })";
     // Floats want a kernel of their own where no sampler interpolates them.
     check(&scene, text, |portable| {
         EXPECTED_OF_LIGHT.into_iter().chain(portable.then_some("light_cells")).collect()
