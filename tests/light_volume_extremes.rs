@@ -371,7 +371,7 @@ const MOST_EXCESS: [(u32, f64); 2] = [(4, 0.14), (12, 0.54)];
 /// What white cubes and slabs scatter and let through is what they receive, give or take what sweeps are off by.
 #[test]
 #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
-fn nothing_returns_more_light_than_it_receives() {
+fn white_media_return_what_they_receive_but_for_the_error_of_sweeps() {
     let mut studio = Studio::new();
     for (thickness, most) in MOST_EXCESS {
         let mut worst = (f64::NEG_INFINITY, String::new());
