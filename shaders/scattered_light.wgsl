@@ -9,7 +9,8 @@
 #import light_volumes
 #import shadows
 
-// For each cell: what comes down to it, 1 less the reflectance of all before it, what it sends back of the light itself.
+// For each cell: what comes down to it; 1 less the reflectance of all before it, and that of all behind; what it sends back of the light
+// itself.
 @group(0) @binding(4) var<storage, read_write> stacks: array<vec4f>;
 // For each cell: fluence, and flux along the axes of the volume.
 @group(0) @binding(5) var<storage, read_write> scattered: array<vec4f>;
@@ -86,6 +87,32 @@ fn seen_beside(across: vec2u, cell: vec4f, face: u32) -> vec3f {
     return share;
 }
 
+// How often light goes through a slice that lies between what turns round `above` and `below` of it: as often it spreads.
+fn crossings(above: vec3f, below: f32) -> f32 {
+    return 1.0 / max(1.0 - dot(above, vec3f(1.0 / 3.0)) * below, 0.02);
+}
+
+// Before anything else, from the far end: what all behind each slice turns round.
+@compute @workgroup_size(64)
+fn look_ahead(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let index = id.x + id.y * groups.x * 64u;
+    let n = extent();
+    let columns = n.x * n.y;
+    if index >= columns {
+        return;
+    }
+    let here = slice.index;
+    let cell = textureLoad(light_cells, cell_of(vec2u(index % n.x, index / n.x), here), 0);
+    var behind = vec3f(1.0);
+    if here < n.z - 1u {
+        behind = faces[2u * ((here & 1u) * columns + index)].rgb;
+    }
+    stacks[3u * (here * columns + index) + 1u] = vec4f(vec3f(0.0), 1.0 - dot(behind, vec3f(1.0 / 3.0)));
+    let layer = two_stream_layer(cell.a * sweep_of.along, cell.rgb, sweep_of.g, sweep_of.mu0, vec3f(0.0), vec3f(0.0));
+    let after = two_stream_add(TwoStreamStack(behind, vec3f(0.0)), layer);
+    faces[2u * (((here + 1u) & 1u) * columns + index)] = vec4f(after.kept, 0.0);
+}
+
 @compute @workgroup_size(64)
 fn forward(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let index = id.x + id.y * groups.x * 64u;
@@ -109,10 +136,11 @@ fn forward(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gr
     let after = two_stream_add(stack, layer);
     let at = 3u * (here * columns + index);
     stacks[at] = vec4f(stack.down, 0.0);
-    stacks[at + 1u] = vec4f(stack.kept, 0.0);
+    let below = stacks[at + 1u].a;
+    stacks[at + 1u] = vec4f(stack.kept, below);
     stacks[at + 2u] = vec4f(layer.s_backward, 0.0);
     let face = 2u * ((here & 1u) * columns + index);
-    faces[face] = vec4f(after.down, spread_in(cell));
+    faces[face] = vec4f(after.down, spread_in(cell) * crossings(1.0 - after.kept, below));
     faces[face + 1u] = vec4f(after.kept, 0.0);
 }
 
@@ -140,9 +168,10 @@ fn back(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
     var layer = two_stream_layer(cell.a * sweep_of.along, cell.rgb, sweep_of.g, sweep_of.mu0, vec3f(0.0), vec3f(0.0));
     let at = 3u * (here * columns + index);
     layer.s_backward = stacks[at + 2u].rgb;
-    let near = two_stream_resolve(TwoStreamStack(stacks[at + 1u].rgb, stacks[at].rgb), layer, far.backward);
+    let kept = stacks[at + 1u];
+    let near = two_stream_resolve(TwoStreamStack(kept.rgb, stacks[at].rgb), layer, far.backward);
     let face = 2u * (((here + 1u) & 1u) * columns + index);
-    faces[face] = vec4f(near.backward, spread_in(cell));
+    faces[face] = vec4f(near.backward, spread_in(cell) * crossings(1.0 - kept.rgb, kept.a));
     faces[face + 1u] = vec4f(near.forward, 0.0);
 
     var fluence = seen_mean(near.forward + near.backward, far.forward + far.backward, cell.a * sweep_of.along) / TWO_STREAM_MU1;

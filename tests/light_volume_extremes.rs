@@ -366,7 +366,7 @@ impl Furnace {
 
 /// The most by which it may be more, for slabs and for cubes. A few percent are meant, and kept where light enters slabs that are not opaque to
 /// a cell; cubes with light along an axis are the worst, since from their sides it spreads out too slowly.
-const MOST_EXCESS: [(u32, f64); 2] = [(4, 0.14), (12, 0.54)];
+const MOST_EXCESS: [(u32, f64); 2] = [(4, 0.10), (12, 0.32)];
 
 /// What white cubes and slabs scatter and let through is what they receive, give or take what sweeps are off by.
 #[test]

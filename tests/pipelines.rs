@@ -53,10 +53,12 @@ fn every_pass_has_valid_pipelines_and_bindings() {
 }
 
 /// A pipeline for each use: volumes with and without a mesh in their light; sweeps away from the light and back.
-const EXPECTED_OF_LIGHT: [&str; 17] = [
+const EXPECTED_OF_LIGHT: [&str; 19] = [
     "gbuffer",
     "light_volume",
     "light_cells",
+    "scattered_light",
+    "scattered_light",
     "scattered_light",
     "scattered_light",
     "scattered_light",

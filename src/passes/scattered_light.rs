@@ -63,8 +63,8 @@ pub(crate) struct AxisSweep {
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct Scatterer {
-    /// With and without a shadow, away from the light and back.
-    kernels: [Option<[Kernel; 2]>; 2],
+    /// Without and with a shadow: the look ahead, away from the light and back.
+    kernels: [Option<[Kernel; 3]>; 2],
     version: u64,
 }
 
@@ -260,7 +260,7 @@ fn scatter(
     mut timer: Option<&mut PassTimer>,
     report: &mut Report,
 ) -> Result<wgpu::Buffer, GpuError> {
-    let [forward, back] = scatterer.kernels(gpu, shadow.is_some(), report)?;
+    let [look_ahead, forward, back] = scatterer.kernels(gpu, shadow.is_some(), report)?;
     let size = cells.grid.size();
     let count = u64::from(size.element_product());
     let widest = recipe.sweeps.iter().map(AxisSweep::columns).max();
@@ -289,6 +289,7 @@ fn scatter(
         let columns = sweep.columns();
         let away = (0..sweep.slices()).map(|slice| slice * stride);
         let timing = timer.as_deref_mut().and_then(|timer| timer.time_compute("scattered_light"));
+        look_ahead.sweep(gpu, &mut encoder, &resources, columns, away.clone().rev(), None);
         forward.sweep(gpu, &mut encoder, &resources, columns, away.clone(), timing);
         let timing = timer.as_deref_mut().and_then(|timer| timer.time_compute("scattered_light"));
         back.sweep(gpu, &mut encoder, &resources, columns, away.rev(), timing);
@@ -299,14 +300,15 @@ fn scatter(
 }
 
 impl Scatterer {
-    /// The kernels of the sweeps away from the light and back, made when they are first asked for.
-    fn kernels(&mut self, gpu: &Gpu, shadowed: bool, report: &mut Report) -> Result<&[Kernel; 2], GpuError> {
+    /// The kernels, made when they are first asked for.
+    fn kernels(&mut self, gpu: &Gpu, shadowed: bool, report: &mut Report) -> Result<&[Kernel; 3], GpuError> {
         let known = &mut self.kernels[usize::from(shadowed)];
         let kernels = match known.take() {
             Some(kernels) => kernels,
             None => {
-                report.pipelines.extend(["scattered_light"; 2]);
-                [make(gpu, shadowed, "forward")?, make(gpu, shadowed, "back")?]
+                report.pipelines.extend(["scattered_light"; 3]);
+                let make = |entry_point| make(gpu, shadowed, entry_point);
+                [make("look_ahead")?, make("forward")?, make("back")?]
             }
         };
         Ok(known.insert(kernels))
