@@ -12,7 +12,7 @@
 // For each cell: what comes down to it; 1 less the reflectance of all before it, and that of all behind; what it sends back of the light
 // itself.
 @group(0) @binding(4) var<storage, read_write> stacks: array<vec4f>;
-// For each cell: fluence, and flux along the axes of the volume.
+// For each cell: fluence, and what the first axis counts; flux along the axes of the volume, and what the second counts.
 @group(0) @binding(5) var<storage, read_write> scattered: array<vec4f>;
 
 // Optical depths are told apart up to this, and in a cell from this on.
@@ -22,20 +22,25 @@ const LEAST_RISE = 0.1;
 // The weight of an axis from which on its flux counts by half: the axes share the fluence, but each has all of the flux along it.
 const HALF_FLUX = 0.02;
 
-// T' over the width of a cell.
-fn beam_at(across: vec2u, along: u32, beam: vec3f) -> vec3f {
-    var sum = vec3f(0.0);
+// The share of the light that arrives at a face, over the width of a cell.
+fn light_at(across: vec2u, along: u32) -> f32 {
+    var sum = 0.0;
     for (var i = 0u; i < 4u; i += 1u) {
         let at = vec2f(across) + 0.25 + 0.5 * vec2f(f32(i & 1u), f32(i >> 1u));
         let place = place_of(at, f32(along));
-        sum += 0.25 * light_seen(0u, place) * exp(-light_depth(0u, place) * beam);
+        sum += 0.25 * light_seen(0u, place) * exp(-light_depth(0u, place));
     }
     return sum;
 }
 
-// How much this axis counts in a cell: the more the light leans to it, and the faster it fades along it. Along a surface that it does not
+// T' of it.
+fn beam_of(light: f32, beam: vec3f) -> vec3f {
+    return select(vec3f(0.0), exp(log(max(light, 1e-37)) * beam), light > 0.0);
+}
+
+// How much each axis counts in a cell: the more the light leans to it, and the faster it fades along it. Along a surface that it does not
 // enter through light would be shut in, as nothing leaves a sweep aside but what spreads.
-fn weight_in(across: vec2u, along: u32) -> f32 {
+fn weights_in(across: vec2u, along: u32) -> vec3f {
     let place = place_of(vec2f(across) + 0.5, f32(along) + 0.5);
     var weights = vec3f(0.0);
     for (var axis = 0u; axis < 3u; axis += 1u) {
@@ -44,7 +49,13 @@ fn weight_in(across: vec2u, along: u32) -> f32 {
         let rise = min(light_depth(0u, place + half), DEEPEST) - min(light_depth(0u, place - half), DEEPEST);
         weights[axis] = sweep_of.shares[axis] * (rise * rise + LEAST_RISE * LEAST_RISE);
     }
-    return weights[sweep_of.axis] / (weights.x + weights.y + weights.z);
+    return weights / (weights.x + weights.y + weights.z);
+}
+
+// Where a cell's results begin.
+fn result_of(across: vec2u, along: u32) -> u32 {
+    let place = cell_of(across, along);
+    return 2u * ((place.z * sweep_of.cells.y + place.y) * sweep_of.cells.x + place.x);
 }
 
 // Where in 0..1 between the ends of a cell of the optical depth `tau` the mean is of what is seen of it from one end.
@@ -102,7 +113,17 @@ fn look_ahead(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups)
         return;
     }
     let here = slice.index;
-    let cell = textureLoad(light_cells, cell_of(vec2u(index % n.x, index / n.x), here), 0);
+    let across = vec2u(index % n.x, index / n.x);
+    // The first axis finds what each of them counts. (A loop of one turn: software adapters run both sides of every `if`.)
+    var finds = sweep_of.is_first == 1u;
+    while finds {
+        let weights = weights_in(across, here);
+        let out = result_of(across, here);
+        scattered[out] = vec4f(0.0, 0.0, 0.0, weights.x);
+        scattered[out + 1u] = vec4f(0.0, 0.0, 0.0, weights.y);
+        finds = false;
+    }
+    let cell = textureLoad(light_cells, cell_of(across, here), 0);
     var behind = vec3f(1.0);
     if here < n.z - 1u {
         behind = faces[2u * ((here & 1u) * columns + index)].rgb;
@@ -125,13 +146,22 @@ fn forward(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gr
     let here = slice.index;
     let cell = textureLoad(light_cells, cell_of(across, here), 0);
     var stack = TwoStreamStack(vec3f(1.0), vec3f(0.0));
+    var arriving: f32;
     if here > 0u {
         let before = (here - 1u) & 1u;
-        stack = TwoStreamStack(faces[2u * (before * columns + index) + 1u].rgb, spread_out(across, before));
+        let known = faces[2u * (before * columns + index) + 1u];
+        stack = TwoStreamStack(known.rgb, spread_out(across, before));
+        arriving = known.a;
     }
+    var is_first = here == 0u;
+    while is_first {
+        arriving = light_at(across, 0u);
+        is_first = false;
+    }
+    let leaving = light_at(across, here + 1u);
     let beam = two_stream_beam(cell.rgb, sweep_of.g);
-    let first = beam_at(across, here, beam);
-    let second = beam_at(across, here + 1u, beam);
+    let first = beam_of(arriving, beam);
+    let second = beam_of(leaving, beam);
     let layer = two_stream_layer(cell.a * sweep_of.along, cell.rgb, sweep_of.g, sweep_of.mu0, first, second);
     let after = two_stream_add(stack, layer);
     let at = 3u * (here * columns + index);
@@ -141,7 +171,7 @@ fn forward(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gr
     stacks[at + 2u] = vec4f(layer.s_backward, 0.0);
     let face = 2u * ((here & 1u) * columns + index);
     faces[face] = vec4f(after.down, spread_in(cell) * crossings(1.0 - after.kept, below));
-    faces[face + 1u] = vec4f(after.kept, 0.0);
+    faces[face + 1u] = vec4f(after.kept, leaving);
 }
 
 @compute @workgroup_size(64)
@@ -180,9 +210,9 @@ fn back(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group
     }
     let flux = 0.5 * (near.forward - near.backward + far.forward - far.backward);
     let along = select(-1.0, 1.0, sweep_of.forwards == 1u) * dot(flux, vec3f(1.0 / 3.0));
-    let weight = weight_in(across, here);
-    let place = cell_of(across, here);
-    let out = 2u * ((place.z * sweep_of.cells.y + place.y) * sweep_of.cells.x + place.x);
+    let out = result_of(across, here);
+    let weights = vec2f(scattered[out].a, scattered[out + 1u].a);
+    let weight = vec3f(weights, 1.0 - weights.x - weights.y)[sweep_of.axis];
     scattered[out] += vec4f(weight * fluence, 0.0);
     scattered[out + 1u] += vec4f(weight / (weight + HALF_FLUX) * along * unrolled(vec3f(0.0, 0.0, 1.0)), 0.0);
 }

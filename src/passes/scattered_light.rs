@@ -81,6 +81,7 @@ mirror! {
         g: f32,
         forwards: u32,
         spread: f32,
+        is_first: u32,
     }
 }
 
@@ -170,6 +171,7 @@ impl AxisSweep {
             g: self.g,
             forwards: u32::from(self.forwards),
             spread: (2.0 / (3.0 * MU1) * self.width * self.width) as f32,
+            is_first: u32::from((0..self.axis).all(|axis| self.shares[axis] == 0.0)),
         }
     }
 }
