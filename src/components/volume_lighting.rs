@@ -31,7 +31,8 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 /// *Single scattering* is light that was scattered once: albedo p(g, cos) E exp(-tau) from each piece of the medium, with tau the optical
 /// depth towards the light and p Henyey and Greenstein's phase function. It is exact as `resolution` and the step of the ray are
 /// refined. The *light volume* (after Ropinski and others 2010) adds light that was scattered more often, by sweeps through the volume away
-/// from the light and back: an approximation, see `docs/architecture.md` for how far off it is.
+/// from the light and back: an approximation, see `docs/architecture.md` for how far off it is. `cone_angle: Auto` is 63 degrees, with
+/// which light spreads across as it diffuses in the medium; a narrower cone keeps it closer to its way.
 ///
 /// Volumes with one of these two shade the meshes of a scene and are shaded by them, unless the head of the scene says otherwise.
 ///
