@@ -7,7 +7,7 @@
 
 // Colour and sigma_t per scene unit.
 fn classified_at(place: vec3f) -> vec4f {
-    if holds_nothing(place) {
+    if brick_distance(place) > 0.0 {
         return vec4f(0.0);
     }
     let at = entry_at(place);

@@ -3,9 +3,9 @@
 // A texel holds the mean of sigma_t along the light from where it enters the volume, times the length of a slice; times the slices
 // passed it is tau, and exp(-tau) of the light is left. The mean varies slowly even where tau does not, and where the medium is the same
 // everywhere it is exact at whatever resolution. tau is the sum over segments of at most a voxel along which the value changes evenly,
-// by the integral of the transfer function: exact for whatever function, of second order for a field that is not linear.
+// by the integral of the transfer function: exact for whatever function, and of second order in the voxel for a field that is not linear.
 //
-// reads  volume texture, extinction table, brick distances
+// reads  volume texture, the integral of the extinction, brick distances
 // writes r32float: mean sigma_t times the length of a slice
 
 #import classified
@@ -94,11 +94,8 @@ const RUN = 16.0;
 
 // Slices from a place on in which there is nothing for certain.
 fn empty_slices(place: vec3f, step: vec3f) -> f32 {
-    let at = vec3u(clamp(place * classified.size / BRICK, vec3f(0.0), vec3f(classified.bricks) - 0.5));
-    let brick = (at.z * classified.bricks.y + at.y) * classified.bricks.x + at.x;
-    let distance = f32(textureLoad(brick_distances, vec2u(brick % BRICK_ROW, brick / BRICK_ROW), 0).r);
     let pace = abs(step) * classified.size / BRICK;
-    return floor(max(distance - 1.0, 0.0) / max(pace.x, max(pace.y, pace.z)));
+    return floor(max(brick_distance(place) - 1.0, 0.0) / max(pace.x, max(pace.y, pace.z)));
 }
 
 // The slices from `first` to `end` of a column.

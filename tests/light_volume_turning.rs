@@ -69,11 +69,6 @@ fn worst_jump(studio: &mut Studio, lighting: &str, degrees: u32) -> f64 {
         differences[degree] / median,
         sorted[0] / median
     );
-    if std::env::var("TYNDALL_SHOW").is_ok() {
-        let shown: Vec<_> =
-            differences.iter().map(|difference| (100.0 * difference / median) as u32).collect();
-        eprintln!("{shown:?}");
-    }
     differences[degree] / median
 }
 

@@ -21,10 +21,11 @@ struct Classified {
 @group(0) @binding(2) var brick_distances: texture_2d<u32>;
 @group(0) @binding(3) var linear_sampler: sampler;
 
-fn holds_nothing(place: vec3f) -> bool {
+// How many bricks away the nearest one is that holds something; 0 if it is the one at a place.
+fn brick_distance(place: vec3f) -> f32 {
     let at = vec3u(clamp(place * classified.size / BRICK, vec3f(0.0), vec3f(classified.bricks) - 0.5));
     let brick = (at.z * classified.bricks.y + at.y) * classified.bricks.x + at.x;
-    return textureLoad(brick_distances, vec2u(brick % BRICK_ROW, brick / BRICK_ROW), 0).r != 0u;
+    return f32(textureLoad(brick_distances, vec2u(brick % BRICK_ROW, brick / BRICK_ROW), 0).r);
 }
 
 // Place in the table, in entries, of what is at a place of the volume; constant beyond its faces. Less than 0 where a sample is missing.

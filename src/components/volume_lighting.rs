@@ -29,8 +29,8 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 ///
 /// In the other two the colour of the transfer function is the albedo, 0 to 1 in each channel (more counts as 1), and only lights give light.
 /// *Single scattering* is light that was scattered once: albedo p(g, cos) E exp(-tau) from each piece of the medium, with tau the optical
-/// depth towards the light and p Henyey and Greenstein's phase function. It is exact as `resolution` and the step of the ray are
-/// refined. The *light volume* (after Ropinski and others 2010) adds light that was scattered more often, by sweeps through the volume away
+/// depth towards the light and p Henyey and Greenstein's phase function. It is exact but for errors of second order in the voxel
+/// and the step of the ray. The *light volume* (after Ropinski and others 2010) adds light that was scattered more often, by sweeps through the volume away
 /// from the light and back: an approximation, see `docs/architecture.md` for how far off it is. `cone_angle: Auto` is 63 degrees, with
 /// which light spreads across as it diffuses in the medium; a narrower cone keeps it closer to its way.
 ///

@@ -5,13 +5,10 @@
 
 use super::classify::Classified;
 use super::light_volume::lighting_in_force;
-use super::light_volume::medium::Medium;
-use super::raycast::volumes_module;
+use super::light_volume::medium::{Medium, MediumKernels};
 use super::upload::VolumeTexture;
 use crate::components::{SceneSettings, Shading, VolumeLighting};
-use crate::gpu::{
-    Filtering, Gpu, GpuError, Grid, Invocations, Kernel, KernelDescriptor, PassTimer, binding, uniform_buffer,
-};
+use crate::gpu::{Gpu, GpuError, Grid, Invocations, PassTimer, binding, uniform_buffer};
 use crate::loading::LoadedVolume;
 use crate::render::Failure;
 use crate::{mirrors::mirror, report::Report};
@@ -39,7 +36,7 @@ struct Recipe {
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct CellAverager {
-    kernels: Vec<(Filtering, Kernel)>,
+    kernels: MediumKernels,
     version: u64,
 }
 
@@ -51,9 +48,6 @@ mirror! {
         samples: UVec3,
     }
 }
-
-/// The bindings of the kernel in front of the volume.
-const FIRST_VOLUME: usize = 6;
 
 /// Nodes of direct light to a cell of scattered light, along each axis.
 const COARSER: f64 = 4.0;
@@ -128,7 +122,6 @@ fn make(
     timing: Option<wgpu::ComputePassTimestampWrites>,
     report: &mut Report,
 ) -> Result<Grid, GpuError> {
-    let filtering = texture.format.filtering;
     let grid = Grid::new(gpu, "light cells", cells, wgpu::TextureFormat::Rgba32Float)?;
     // Every other voxel, with its neighbours by interpolation.
     let voxels = UVec3::from(loaded.data.size).as_vec3() / cells.as_vec3();
@@ -142,42 +135,13 @@ fn make(
         wgpu::BindingResource::TextureView(&grid.view),
         wgpu::BindingResource::TextureView(&texture.view),
     ]);
-    let kernel = averager.kernel(gpu, filtering, report)?;
+    let bindings = [binding::UNIFORM, binding::grid_out(wgpu::TextureFormat::Rgba32Float)];
+    let filtering = texture.format.filtering;
+    let kernel = averager.kernels.get(gpu, filtering, ("light_cells", "average"), &bindings, report)?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     kernel.run(gpu, &mut encoder, &resources, Invocations::Count(cells.element_product()), timing);
     gpu.queue.submit([encoder.finish()]);
     let samples = u64::from(cells.element_product()) * u64::from(samples.element_product());
     report.ran("light_cells", &[("cells", u64::from(cells.element_product())), ("samples", samples)]);
     Ok(grid)
-}
-
-impl CellAverager {
-    /// The kernel, made when it is first asked for.
-    fn kernel(&mut self, gpu: &Gpu, filtering: Filtering, report: &mut Report) -> Result<&Kernel, GpuError> {
-        let known = self.kernels.iter().position(|(made_for, _)| *made_for == filtering);
-        let index = match known {
-            Some(index) => index,
-            None => {
-                let mut bindings = Medium::BINDINGS.to_vec();
-                bindings.extend([
-                    binding::UNIFORM,
-                    binding::grid_out(wgpu::TextureFormat::Rgba32Float),
-                    binding::texture(wgpu::TextureViewDimension::D3, filtering == Filtering::Sampler),
-                ]);
-                let kernel = Kernel::new(
-                    gpu,
-                    &KernelDescriptor {
-                        name: "light_cells",
-                        generated: &[("volumes", volumes_module(&[filtering], FIRST_VOLUME))],
-                        entry_point: "average",
-                        bindings: &bindings,
-                    },
-                )?;
-                report.pipelines.push("light_cells");
-                self.kernels.push((filtering, kernel));
-                self.kernels.len() - 1
-            }
-        };
-        Ok(&self.kernels[index].1)
-    }
 }

@@ -10,19 +10,16 @@ pub mod sweep;
 pub mod through;
 
 use super::classify::Classified;
-use super::raycast::volumes_module;
 use super::upload::VolumeTexture;
 use crate::components::{DirectionalLight, Motion, Placement, SceneSettings, Shading, VolumeLighting};
-use crate::gpu::{
-    Filtering, Gpu, GpuError, Grid, Invocations, Kernel, KernelDescriptor, PassTimer, binding, uniform_buffer,
-};
+use crate::gpu::{Gpu, GpuError, Grid, Invocations, PassTimer, binding, uniform_buffer};
 use crate::loading::LoadedVolume;
 use crate::render::Failure;
 use crate::view::lights_in_order;
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
 use glam::{DAffine3, DVec3, UVec3};
-use medium::Medium;
+use medium::{Medium, MediumKernels};
 use sweep::Sweep;
 
 /// The light volumes of a volume, one for each light, in the order of the lights.
@@ -57,7 +54,7 @@ struct Recipe {
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct LightSweeper {
-    kernels: Vec<(Filtering, Kernel)>,
+    kernels: MediumKernels,
     version: u64,
 }
 
@@ -72,9 +69,6 @@ mirror! {
 
 /// Format of a light volume.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
-
-/// The bindings of the kernel in front of the volume.
-pub(crate) const FIRST_VOLUME: usize = 7;
 
 /// The lighting of a volume, with `Shading` taken into account.
 pub(crate) fn lighting_in_force(
@@ -185,7 +179,6 @@ fn make(
     timing: Option<wgpu::ComputePassTimestampWrites>,
     report: &mut Report,
 ) -> Result<Grid, GpuError> {
-    let filtering = texture.format.filtering;
     let size = recipe.sweep.size();
     let grid = Grid::new(gpu, "light volume", size, FORMAT)?;
     let voxels = DVec3::from(loaded.data.size.map(f64::from));
@@ -202,42 +195,12 @@ fn make(
         segments.as_entire_binding(),
         wgpu::BindingResource::TextureView(&texture.view),
     ]);
-    let kernel = sweeper.kernel(gpu, filtering, report)?;
+    let bindings = [binding::UNIFORM, binding::GRID_OUT, binding::UNIFORM];
+    let filtering = texture.format.filtering;
+    let kernel = sweeper.kernels.get(gpu, filtering, ("light_volume", "sweep"), &bindings, report)?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     kernel.run(gpu, &mut encoder, &resources, Invocations::Count(size.x * size.y), timing);
     gpu.queue.submit([encoder.finish()]);
     report.ran("light_volume", &[("texels", size.to_array().into_iter().map(u64::from).product())]);
     Ok(grid)
-}
-
-impl LightSweeper {
-    /// The kernel, made when it is first asked for.
-    fn kernel(&mut self, gpu: &Gpu, filtering: Filtering, report: &mut Report) -> Result<&Kernel, GpuError> {
-        let known = self.kernels.iter().position(|(made_for, _)| *made_for == filtering);
-        let index = match known {
-            Some(index) => index,
-            None => {
-                let mut bindings = Medium::BINDINGS.to_vec();
-                bindings.extend([
-                    binding::UNIFORM,
-                    binding::GRID_OUT,
-                    binding::UNIFORM,
-                    binding::texture(wgpu::TextureViewDimension::D3, filtering == Filtering::Sampler),
-                ]);
-                let kernel = Kernel::new(
-                    gpu,
-                    &KernelDescriptor {
-                        name: "light_volume",
-                        generated: &[("volumes", volumes_module(&[filtering], FIRST_VOLUME))],
-                        entry_point: "sweep",
-                        bindings: &bindings,
-                    },
-                )?;
-                report.pipelines.push("light_volume");
-                self.kernels.push((filtering, kernel));
-                self.kernels.len() - 1
-            }
-        };
-        Ok(&self.kernels[index].1)
-    }
 }

@@ -14,7 +14,8 @@ pub(crate) fn filtering(gpu: &Gpu) -> Filtering {
 }
 
 /// The module `light_volumes` of a shader that looks up `count` light volumes: `light_depth(index, place)` is the optical depth
-/// towards the light, `light_left` the share of it that arrives. Its bindings, from `first` on: the sweeps, a sampler, and one texture each; none at all for none.
+/// towards the light, `light_left` the share of it that arrives. Its bindings, from `first` on: the sweeps, a sampler, and one texture
+/// each; none at all for none.
 pub(crate) fn light_volumes_module(
     count: usize,
     filtering: Filtering,

@@ -1,11 +1,12 @@
 //! The medium of a volume as kernels that sweep it read it: see `shaders/shared/classified.wgsl`.
 
-use crate::gpu::{Gpu, binding, texture_of, uniform_buffer};
+use crate::gpu::{Filtering, Gpu, GpuError, Kernel, KernelDescriptor, binding, texture_of, uniform_buffer};
 use crate::loading::LoadedVolume;
 use crate::mirrors::mirror;
 use crate::passes::classify::Classified;
-use crate::passes::raycast::BRICK_ROW;
+use crate::passes::raycast::{BRICK_ROW, volumes_module};
 use crate::passes::upload::{SENTINEL_THRESHOLD, VolumeTexture};
+use crate::report::Report;
 use glam::{UVec2, UVec3, Vec3};
 
 mirror! {
@@ -18,6 +19,38 @@ mirror! {
         sentinel: f32,
         size: Vec3,
         bricks: UVec3,
+    }
+}
+
+/// Kernels that read a medium: one for each way in which volumes are interpolated, made when it is first asked for.
+#[derive(Default, Debug)]
+pub(crate) struct MediumKernels(Vec<(Filtering, Kernel)>);
+
+impl MediumKernels {
+    /// The kernel `entry_point` of the shader `name`. Its own bindings stand behind those of the medium, and the volume behind them.
+    pub fn get(
+        &mut self,
+        gpu: &Gpu,
+        filtering: Filtering,
+        (name, entry_point): (&'static str, &str),
+        own: &[wgpu::BindingType],
+        report: &mut Report,
+    ) -> Result<&Kernel, GpuError> {
+        let index = match self.0.iter().position(|(made_for, _)| *made_for == filtering) {
+            Some(index) => index,
+            None => {
+                let volume =
+                    binding::texture(wgpu::TextureViewDimension::D3, filtering == Filtering::Sampler);
+                let bindings = [&Medium::BINDINGS, own, &[volume]].concat();
+                let generated = [("volumes", volumes_module(&[filtering], bindings.len() - 1))];
+                let descriptor =
+                    KernelDescriptor { name, generated: &generated, entry_point, bindings: &bindings };
+                self.0.push((filtering, Kernel::new(gpu, &descriptor)?));
+                report.pipelines.push(name);
+                self.0.len() - 1
+            }
+        };
+        Ok(&self.0[index].1)
     }
 }
 
