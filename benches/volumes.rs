@@ -31,7 +31,8 @@ const SHOWN: f64 = 2e-4;
 const REPETITIONS: usize = 3;
 
 /// The passes that make the light of a volume.
-const LIGHT_PASSES: [&str; 4] = ["light_volume", "light_cells", "scattered_light", "summed_light"];
+const LIGHT_PASSES: [&str; 5] =
+    ["light_volume", "light_cells", "light_network", "scattered_light", "summed_light"];
 
 /// A picture of the truth and what it shows.
 struct Subject {

@@ -11,7 +11,7 @@
 // writes radiance towards the eye, as a share of `scale`
 
 #import cells
-#import two_stream
+#import peak
 #import light_volumes
 #import shadows
 
@@ -52,7 +52,7 @@ fn sweep(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     let here = slice.index;
     let at = cell_of(across, here);
     let cell = textureLoad(light_cells, at, 0);
-    let beam = two_stream_beam(cell.rgb, sweep_of.g);
+    let beam = beam_extinction(cell.rgb, sweep_of.g);
     var arriving = (1.0 - sweep_of.g) / 12.566370614359172 * eye.scale * textureLoad(fluence, at, 0).rgb;
     for (var i = 0u; i < eye.lights; i += 1u) {
         let place = place_of(vec2f(across) + 0.5, f32(here) + 0.5);
@@ -65,7 +65,7 @@ fn sweep(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
     if here > 0u {
         before = arrived(across, here);
     }
-    let mean = two_stream_lessening(depth);
+    let mean = vec3f(lessening(depth.x), lessening(depth.y), lessening(depth.z));
     let after = before + (source - before) * depth * mean;
     faces[2u * ((here & 1u) * columns + index)] = vec4f(after, spread_in(cell));
     let out = (at.z * sweep_of.cells.y + at.y) * sweep_of.cells.x + at.x;

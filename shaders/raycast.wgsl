@@ -12,7 +12,7 @@
 #import fullscreen
 #import lights
 #import phase
-#import two_stream
+#import peak
 #import volumes
 #import lighting
 #import light_volumes
@@ -57,8 +57,8 @@ struct VolumeInstance {
     first_sweep: u32,
     // Fluence = texel * this.
     fluence_scale: f32,
-    // From eye space to cosines with the axes of the volume.
-    axes: mat3x3f,
+    // The greatest of the phase function beside its peak.
+    peak_cap: f32,
     // 0 Post, 1 Pre, 2 PreIntegrated.
     classification: u32,
     // What classified voxels are shares of.
@@ -186,24 +186,26 @@ fn shade(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre
     return colour * (volume.ambient + volume.diffuse * diffuse) + volume.specular * specular;
 }
 
-// Light that is scattered towards the eye: the source function where the albedo is `colour`. See `src/optics/two_stream.rs`.
-fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
+// Light that is scattered towards the eye: the source function where the albedo is `colour`. Where light is scattered often, what a forward
+// peak scatters counts as light that was not (`src/optics/peak.rs`); `thinned` is 1 - albedo f.
+fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, thinned: f32, place: vec3f, centre: f32, ray: Ray) -> vec3f {
     let albedo = min(colour, vec3f(1.0));
     let is_often = ANY_OFTEN && volume.lighting >= 4u;
-    // Where light is scattered often, what a forward peak scatters counts as light that was not.
-    let beam = select(vec3f(1.0), two_stream_beam(albedo, volume.g), is_often);
+    let towards_eye = ANY_TOWARDS_EYE && volume.lighting == 5u;
+    let cap = select(3e38, volume.peak_cap, is_often && !towards_eye);
     var arriving = vec3f(0.0);
     var specular = vec3f(0.0);
     var normal: Normal;
     if ANY_HIGHLIGHT && volume.specular > 0.0 {
         normal = normal_at(index, volume, place, centre, ray);
     }
-    for (var i = 0u; i < frame.light_count; i += 1u) {
+    for (var i = 0u; i < LIGHTS; i += 1u) {
         let depth = light_depth(volume.first_sweep + i, place);
         let light = lights[i].irradiance * light_seen(volume.first_sweep + i, place);
         if ANY_LEANING {
-            let phase = henyey_greenstein(-lights[i].to_light, -ray.direction, volume.g);
-            arriving += light * exp(-depth * beam) * phase;
+            let phase = min(henyey_greenstein(-lights[i].to_light, -ray.direction, volume.g), cap);
+            let extinction = select(vec3f(1.0), beam_extinction(albedo, volume.g), is_often);
+            arriving += light * exp(-depth * extinction) * phase;
         } else {
             arriving += light * (exp(-depth) / (4.0 * PI));
         }
@@ -213,31 +215,34 @@ fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, cent
     }
     if is_often {
         let even = volume.fluence_scale / (4.0 * PI) * fluence_at(index, place);
-        // The second grid is that of the flux, or that of light towards the eye.
-        var second = vec3f(0.0);
-        if ANY_LEANING && volume.g != 0.0 {
-            second = flux_at(index, place);
-        }
-        if ANY_LEANING && volume.lighting == 5u {
-            arriving += (1.0 - volume.g) * even + volume.g * volume.fluence_scale * second;
+        if ANY_TOWARDS_EYE && towards_eye {
+            arriving += (1.0 - volume.g) * even + volume.g * volume.fluence_scale * eye_light_at(index, place);
         } else {
-            arriving += max(1.0 + 3.0 * volume.g * dot(volume.axes * -ray.direction, second), 0.0) * even;
+            arriving += beside_peak(volume.g) * even;
         }
     }
-    let sent = albedo * arriving + volume.emission * colour;
+    let sent = albedo * arriving / thinned + volume.emission * colour;
     if ANY_HIGHLIGHT {
         return sent + volume.specular * min(4.0 * normal.steepness, 1.0) * specular;
     }
     return sent;
 }
 
+// 1 - albedo f of a piece of the medium; 1 for lightings that know of no peak.
+fn thinning(volume: VolumeInstance, colour: vec3f) -> f32 {
+    if ANY_PEAK && volume.lighting == 4u {
+        return max(mean_beam_extinction(min(colour, vec3f(1.0)), volume.g), 1e-6);
+    }
+    return 1.0;
+}
+
 // What a piece of the medium sends to the eye, per share that it absorbs.
-fn source(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
+fn source(index: u32, volume: VolumeInstance, colour: vec3f, thinned: f32, place: vec3f, centre: f32, ray: Ray) -> vec3f {
     if ANY_GRADIENT && volume.lighting == 1u {
         return shade(index, volume, colour, place, centre, ray);
     }
     if ANY_SCATTERING && (volume.lighting == 2u || volume.lighting >= 4u) {
-        return scatter(index, volume, colour, place, centre, ray);
+        return scatter(index, volume, colour, thinned, place, centre, ray);
     }
     return select(colour, volume.emission * colour, volume.lighting == 3u);
 }
@@ -252,6 +257,8 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
     }
     var radiance = vec3f(0.0);
     var transmittance = 1.0;
+    // Of light in a forward peak, too.
+    var thin_transmittance = 1.0;
     var samples = 0.0;
     loop {
         // The volume whose next segment is the nearest, and where the next of the others begins.
@@ -269,7 +276,7 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
         if nearest == FAR {
             break;
         }
-        let volume = volumes[index];
+        let volume = volumes[min(index, VOLUMES - 1u)];
         let enter = marches[index].enter;
         let leave = marches[index].leave;
         let count = marches[index].count;
@@ -341,7 +348,9 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                         break;
                     }
                 }
-                let alpha = absorbed(entry.a * select(volume.reach * length, 1.0, integrated));
+                let depth = entry.a * select(volume.reach * length, 1.0, integrated);
+                let alpha = absorbed(depth);
+                let thinned = thinning(volume, entry.rgb);
                 var colour = entry.rgb;
                 if ANY_LIT {
                     if integrated {
@@ -351,20 +360,26 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                     } else if ANY_PRE && volume.classification == PRE {
                         texel = texel_at(index, place);
                     }
-                    colour = source(index, volume, colour, place, texel, ray);
+                    colour = source(index, volume, colour, thinned, place, texel, ray);
                 }
-                radiance += transmittance * alpha * colour;
+                if ANY_PEAK {
+                    let thin_alpha = absorbed(depth * thinned);
+                    radiance += thin_transmittance * thin_alpha * colour;
+                    thin_transmittance *= 1.0 - thin_alpha;
+                } else {
+                    radiance += transmittance * alpha * colour;
+                }
                 transmittance *= 1.0 - alpha;
-                if transmittance <= volume.least_transmittance {
+                if select(transmittance, thin_transmittance, ANY_PEAK) <= volume.least_transmittance {
                     break;
                 }
             }
-            if done >= turn || transmittance <= volume.least_transmittance {
+            if done >= turn || select(transmittance, thin_transmittance, ANY_PEAK) <= volume.least_transmittance {
                 break;
             }
         }
         marches[index].done = done;
-        if transmittance <= volume.least_transmittance {
+        if select(transmittance, thin_transmittance, ANY_PEAK) <= volume.least_transmittance {
             transmittance = 0.0;
             break;
         }

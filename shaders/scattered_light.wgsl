@@ -1,218 +1,134 @@
-// Light that was scattered before, by a sweep along an axis and back: two streams in each column of cells, exact but for two directions
-// standing for all, and light that spreads across the axis from slice to slice.
+// Light that a volume scatters for the first time and does not let out, cell by cell: what then diffuses.
 //
-// reads  light cells, the light volume, the shadow of meshes
-// writes fluence and flux, summed over the axes, of a light of irradiance 1
+// What comes into a cell through three of its faces and does not leave through the others is lost there. What of it is not absorbed is scattered;
+// the share of that which escapes is seen as light that was scattered once, and the rest goes on to be scattered again. Two cells see the same
+// light at the face between them. So nothing is counted twice, and all that is lost of the light is absorbed, seen, or diffuses.
+//
+// reads  light cells, what escapes, the light volume, the shadow of meshes
+// writes rgba32float: power, for a light of irradiance 1, in squares of the unit of the network
 
-#import cells
-#import two_stream
+#import level
+#import peak
+#import leaning
 #import light_volumes
 #import shadows
 
-// For each cell: what comes down to it; 1 less the reflectance of all before it, and that of all behind; what it sends back of the light
-// itself.
-@group(0) @binding(4) var<storage, read_write> stacks: array<vec4f>;
-// For each cell: fluence, and what the first axis counts; flux along the axes of the volume, and what the second counts.
-@group(0) @binding(5) var<storage, read_write> scattered: array<vec4f>;
+struct Source {
+    // In which light travels: along the axes of the volume, of unit length.
+    travels: vec3f,
+    // Mean cosine of scattering.
+    g: f32,
+    // What each axis counts: 1, or 0 for those left out.
+    axes: vec3f,
+    // Beside the peak: the share that goes straight on or back, and the mean cosine of the rest.
+    lobe: f32,
+    g_even: f32,
+}
 
-// Optical depths are told apart up to this, and in a cell from this on.
-const DEEPEST = 1e9;
-const LEAST_RISE = 0.1;
+@group(0) @binding(1) var<uniform> source: Source;
+@group(0) @binding(2) var light_cells: texture_3d<f32>;
+@group(0) @binding(3) var<storage, read> escape: array<vec4f>;
+@group(0) @binding(4) var power_out: texture_storage_3d<rgba32float, write>;
 
-// The weight of an axis from which on its flux counts by half: the axes share the fluence, but each has all of the flux along it.
-const HALF_FLUX = 0.02;
+// By how much what escapes falls along a beam, per optical depth: twice the cosine with a plane surface, near it.
+const FALL = 3.0;
 
-// The share of the light that arrives at a face, over the width of a cell.
-fn light_at(across: vec2u, along: u32) -> f32 {
-    var sum = 0.0;
-    for (var i = 0u; i < 4u; i += 1u) {
-        let at = vec2f(across) + 0.25 + 0.5 * vec2f(f32(i & 1u), f32(i >> 1u));
-        let place = place_of(at, f32(along));
-        sum += 0.25 * light_seen(0u, place) * exp(-light_depth(0u, place));
+// The optical depth of a beam through a cell, as a multiple of what it would be if the medium filled the cell evenly, is at most this.
+const MOST_OF_MEAN = 4.0;
+
+// The share that escapes of what a beam scatters in a cell, where `lost` is the optical depth of T' and `falls` that of what escapes: light and
+// what escapes of it are strong at the same end of a thick cell, or at opposite ones.
+fn escaping(mean: f32, lost: f32, falls: f32) -> f32 {
+    let x = clamp(lost, 0.0, 80.0);
+    let y = clamp(falls, -20.0, 80.0);
+    return clamp(mean * lessening(x + y) / (lessening(x) * lessening(y)), 0.0, 1.0);
+}
+
+// Of light that is scattered straight on or back, the share that escapes: from all places along a way through the cell as much of it comes out.
+fn escaping_straight(centre: vec3f, depth: f32, lost: f32, extinction: f32) -> f32 {
+    if source.g < 0.0 {
+        return exp(-depth) * lessening(2.0 * lost) / lessening(lost);
+    }
+    let pace = source.travels / (level.edges * vec3f(level.cells));
+    let safe = select(pace, vec3f(1e-30), abs(pace) < vec3f(1e-30));
+    let walls = max((select(vec3f(0.0), vec3f(1.0), pace > vec3f(0.0)) - centre) / safe, vec3f(0.0));
+    let ends = select(vec3f(1e30), walls, abs(pace) > vec3f(1e-30));
+    let out = centre + pace * min(ends.x, min(ends.y, ends.z));
+    let whole = max(light_depth(0u, out) * extinction - depth, 0.0);
+    return min(exp(-whole) / lessening(lost), 1.0);
+}
+
+// T' at a face of a cell: 0 that with the lower coordinate along the axis, 1 the other. The mean of two places, by turns on either diagonal.
+fn arriving(cell: vec3u, axis: u32, side: u32, albedo: vec3f) -> vec3f {
+    let diagonal = f32((cell.x + cell.y + cell.z + side) & 1u);
+    var sum = vec3f(0.0);
+    for (var which = 0u; which < 2u; which += 1u) {
+        let a = 0.25 + 0.5 * f32(which);
+        let b = mix(a, 1.0 - a, diagonal);
+        let flat = vec3f(a, b, f32(side));
+        let at = select(select(flat, flat.yzx, axis == 1u), flat.zxy, axis == 0u);
+        let place = (vec3f(cell) + at) / vec3f(level.cells);
+        let light = light_seen(0u, place) * exp(-light_depth(0u, place));
+        if LEANS {
+            sum += 0.5 * beam_of(light, albedo, source.g);
+        } else {
+            sum += vec3f(0.5 * light);
+        }
     }
     return sum;
 }
 
-// T' of it.
-fn beam_of(light: f32, beam: vec3f) -> vec3f {
-    return select(vec3f(0.0), exp(log(max(light, 1e-37)) * beam), light > 0.0);
-}
-
-// How much each axis counts in a cell: the more the light leans to it, and the faster it fades along it. Along a surface that it does not
-// enter through light would be shut in, as nothing leaves a sweep aside but what spreads.
-fn weights_in(across: vec2u, along: u32) -> vec3f {
-    let place = place_of(vec2f(across) + 0.5, f32(along) + 0.5);
-    var weights = vec3f(0.0);
+@compute @workgroup_size(64)
+fn light_up(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
+    let index = id.x + id.y * groups.x * 64u;
+    if index >= count_of(level.cells) {
+        return;
+    }
+    let cell = cell_of(index, level.cells);
+    let medium = textureLoad(light_cells, cell, 0);
+    // What light sees of each face.
+    let areas = volume_of() / level.edges * abs(source.travels) * source.axes;
+    var coming = vec3f(0.0);
+    // The mean of what comes, by what comes.
+    var brightness = 0.0;
+    var leaving = vec3f(0.0);
     for (var axis = 0u; axis < 3u; axis += 1u) {
-        var half = vec3f(0.0);
-        half[axis] = 0.5 / f32(sweep_of.cells[axis]);
-        let rise = min(light_depth(0u, place + half), DEEPEST) - min(light_depth(0u, place - half), DEEPEST);
-        weights[axis] = sweep_of.shares[axis] * (rise * rise + LEAST_RISE * LEAST_RISE);
-    }
-    return weights / (weights.x + weights.y + weights.z);
-}
-
-// Where a cell's results begin.
-fn result_of(across: vec2u, along: u32) -> u32 {
-    let place = cell_of(across, along);
-    return 2u * ((place.z * sweep_of.cells.y + place.y) * sweep_of.cells.x + place.x);
-}
-
-// Where in 0..1 between the ends of a cell of the optical depth `tau` the mean is of what is seen of it from one end.
-fn seen_depth(tau: f32) -> f32 {
-    let thick = clamp(tau, 0.1, 80.0);
-    return select(1.0 / max(tau, 0.1) - 1.0 / (exp(thick) - 1.0), 0.5 - tau / 12.0, tau < 0.2);
-}
-
-// The mean over the thickness of a cell as it is seen from where there is less.
-fn seen_mean(a: vec3f, b: vec3f, tau: f32) -> vec3f {
-    return mix(min(a, b), max(a, b), seen_depth(tau));
-}
-
-// Both streams at a face behind a slice, of a cell that has something behind.
-fn both_at(across: vec2i, face: u32) -> vec4f {
-    let n = vec2i(extent().xy);
-    let index = 2u * (face * u32(n.x * n.y) + u32(across.y * n.x + across.x));
-    return faces[index] + vec4f(faces[index + 1u].rgb, 0.0);
-}
-
-// The share of the light in a cell that is seen of it from aside. On its sides there is what diffuses there from both, and on those of the
-// volume what Marshak's condition leaves.
-fn seen_beside(across: vec2u, cell: vec4f, face: u32) -> vec3f {
-    let n = vec2i(extent().xy);
-    let own = both_at(vec2i(across), face);
-    let turned = cell.a * (1.0 - dot(cell.rgb, vec3f(1.0 / 3.0)) * sweep_of.g);
-    var share = vec3f(1.0);
-    for (var side = 0; side < 4; side += 1) {
-        let is_first = side < 2;
-        let there = vec2i(across) + select(vec2i(0, 1), vec2i(1, 0), is_first) * (2 * (side & 1) - 1);
-        let length = select(sweep_of.across.y, sweep_of.across.x, is_first);
-        var edge = vec3f(1.0 / (1.0 + 0.75 * turned * length));
-        if all(there >= vec2i(0)) && all(there < n) {
-            let other = both_at(there, face);
-            let most = max(own.rgb, vec3f(1e-30));
-            edge = mix(min(other.rgb, most) / most, vec3f(1.0), own.a / max(own.a + other.a, 1e-30));
+        // (A loop of one turn, since software adapters run both sides of every `if`: most cells are empty, and light along an axis comes
+        // in at one face.)
+        var is_lit = medium.a > 0.0 && areas[axis] > 1e-6 * volume_of();
+        loop {
+            if !is_lit {
+                break;
+            }
+            let enters = select(1u, 0u, source.travels[axis] > 0.0);
+            let enters_here = arriving(cell, axis, enters, medium.rgb);
+            coming += areas[axis] * enters_here;
+            brightness += areas[axis] * dot(enters_here, enters_here);
+            leaving += areas[axis] * arriving(cell, axis, 1u - enters, medium.rgb);
+            is_lit = false;
         }
-        share *= mix(edge, vec3f(1.0), 2.0 * seen_depth(cell.a * length));
     }
-    return share;
-}
+    let area = areas.x + areas.y + areas.z;
+    let extinction = beam_extinction(medium.rgb, source.g);
+    let mean_extinction = dot(extinction, vec3f(1.0 / 3.0));
+    let thickness = min(medium.a * level.unit * volume_of() / max(area, 1e-30), 1e9);
+    // No more than the cell can take, wherever in it the medium is: between columns of light its depth is interpolated.
+    let most = coming * (1.0 - exp(-MOST_OF_MEAN * thickness * extinction));
+    let lost = clamp(coming - leaving, vec3f(0.0), most);
 
-// How often light goes through a slice that lies between what turns round `above` and `below` of it: as often it spreads.
-fn crossings(above: vec3f, below: f32) -> f32 {
-    return 1.0 / max(1.0 - dot(above, vec3f(1.0 / 3.0)) * below, 0.02);
-}
-
-// Before anything else, from the far end: what all behind each slice turns round.
-@compute @workgroup_size(64)
-fn look_ahead(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let index = id.x + id.y * groups.x * 64u;
-    let n = extent();
-    let columns = n.x * n.y;
-    if index >= columns {
-        return;
+    // Through the cell from the face that light comes in at.
+    let ways = level.edges / max(abs(source.travels) * source.axes, vec3f(1e-12));
+    let through = min(medium.a * level.unit * min(ways.x, min(ways.y, ways.z)), 1e9) * mean_extinction;
+    let found = escape[index];
+    let escapes = vec4f(found.xyz, min(found.w, 1.0));
+    let towards = clamp(dot(source.travels, escapes.xyz) / max(escapes.w, 1e-20), -1.0, 1.0);
+    let leaning = escapes.w + 3.0 * source.g_even * dot(source.travels, escapes.xyz);
+    var out = escaping(leaning, through, -FALL * towards * through);
+    if LEANS {
+        let centre = (vec3f(cell) + 0.5) / vec3f(level.cells);
+        let before = -log(clamp(brightness / max(dot(coming, vec3f(1.0)), 1e-30), 1e-30, 1.0));
+        out = mix(out, escaping_straight(centre, before, clamp(through, 0.0, 80.0), mean_extinction), source.lobe);
     }
-    let here = slice.index;
-    let across = vec2u(index % n.x, index / n.x);
-    // The first axis finds what each of them counts. (A loop of one turn: software adapters run both sides of every `if`.)
-    var finds = sweep_of.is_first == 1u;
-    while finds {
-        let weights = weights_in(across, here);
-        let out = result_of(across, here);
-        scattered[out] = vec4f(0.0, 0.0, 0.0, weights.x);
-        scattered[out + 1u] = vec4f(0.0, 0.0, 0.0, weights.y);
-        finds = false;
-    }
-    let cell = textureLoad(light_cells, cell_of(across, here), 0);
-    var behind = vec3f(1.0);
-    if here < n.z - 1u {
-        behind = faces[2u * ((here & 1u) * columns + index)].rgb;
-    }
-    stacks[3u * (here * columns + index) + 1u] = vec4f(vec3f(0.0), 1.0 - dot(behind, vec3f(1.0 / 3.0)));
-    let layer = two_stream_layer(cell.a * sweep_of.along, cell.rgb, sweep_of.g, sweep_of.mu0, vec3f(0.0), vec3f(0.0));
-    let after = two_stream_add(TwoStreamStack(behind, vec3f(0.0)), layer);
-    faces[2u * (((here + 1u) & 1u) * columns + index)] = vec4f(after.kept, 0.0);
-}
-
-@compute @workgroup_size(64)
-fn forward(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let index = id.x + id.y * groups.x * 64u;
-    let n = extent();
-    let columns = n.x * n.y;
-    if index >= columns {
-        return;
-    }
-    let across = vec2u(index % n.x, index / n.x);
-    let here = slice.index;
-    let cell = textureLoad(light_cells, cell_of(across, here), 0);
-    var stack = TwoStreamStack(vec3f(1.0), vec3f(0.0));
-    var arriving: f32;
-    if here > 0u {
-        let before = (here - 1u) & 1u;
-        let known = faces[2u * (before * columns + index) + 1u];
-        stack = TwoStreamStack(known.rgb, spread_out(across, before));
-        arriving = known.a;
-    }
-    var is_first = here == 0u;
-    while is_first {
-        arriving = light_at(across, 0u);
-        is_first = false;
-    }
-    let leaving = light_at(across, here + 1u);
-    let beam = two_stream_beam(cell.rgb, sweep_of.g);
-    let first = beam_of(arriving, beam);
-    let second = beam_of(leaving, beam);
-    let layer = two_stream_layer(cell.a * sweep_of.along, cell.rgb, sweep_of.g, sweep_of.mu0, first, second);
-    let after = two_stream_add(stack, layer);
-    let at = 3u * (here * columns + index);
-    stacks[at] = vec4f(stack.down, 0.0);
-    let below = stacks[at + 1u].a;
-    stacks[at + 1u] = vec4f(stack.kept, below);
-    stacks[at + 2u] = vec4f(layer.s_backward, 0.0);
-    let face = 2u * ((here & 1u) * columns + index);
-    faces[face] = vec4f(after.down, spread_in(cell) * crossings(1.0 - after.kept, below));
-    faces[face + 1u] = vec4f(after.kept, leaving);
-}
-
-@compute @workgroup_size(64)
-fn back(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
-    let index = id.x + id.y * groups.x * 64u;
-    let n = extent();
-    let columns = n.x * n.y;
-    if index >= columns {
-        return;
-    }
-    let across = vec2u(index % n.x, index / n.x);
-    let here = slice.index;
-    let cell = textureLoad(light_cells, cell_of(across, here), 0);
-    let behind = here & 1u;
-    // Behind the last slice is what the sweep forward left there, and nothing comes back.
-    let is_last = here == n.z - 1u;
-    let found = faces[2u * (behind * columns + index)].rgb;
-    var far: TwoStreams;
-    if is_last {
-        far = TwoStreams(found, vec3f(0.0));
-    } else {
-        far = TwoStreams(faces[2u * (behind * columns + index) + 1u].rgb, spread_out(across, behind));
-    }
-    var layer = two_stream_layer(cell.a * sweep_of.along, cell.rgb, sweep_of.g, sweep_of.mu0, vec3f(0.0), vec3f(0.0));
-    let at = 3u * (here * columns + index);
-    layer.s_backward = stacks[at + 2u].rgb;
-    let kept = stacks[at + 1u];
-    let near = two_stream_resolve(TwoStreamStack(kept.rgb, stacks[at].rgb), layer, far.backward);
-    let face = 2u * (((here + 1u) & 1u) * columns + index);
-    faces[face] = vec4f(near.backward, spread_in(cell) * crossings(1.0 - kept.rgb, kept.a));
-    faces[face + 1u] = vec4f(near.forward, 0.0);
-
-    var fluence = seen_mean(near.forward + near.backward, far.forward + far.backward, cell.a * sweep_of.along) / TWO_STREAM_MU1;
-    if !is_last {
-        fluence *= seen_beside(across, cell, behind);
-    }
-    let flux = 0.5 * (near.forward - near.backward + far.forward - far.backward);
-    let along = select(-1.0, 1.0, sweep_of.forwards == 1u) * dot(flux, vec3f(1.0 / 3.0));
-    let out = result_of(across, here);
-    let weights = vec2f(scattered[out].a, scattered[out + 1u].a);
-    let weight = vec3f(weights, 1.0 - weights.x - weights.y)[sweep_of.axis];
-    scattered[out] += vec4f(weight * fluence, 0.0);
-    scattered[out + 1u] += vec4f(weight / (weight + HALF_FLUX) * along * unrolled(vec3f(0.0, 0.0, 1.0)), 0.0);
+    let scattered = medium.rgb * beside_peak(source.g) / max(extinction, vec3f(1e-6));
+    textureStore(power_out, cell, vec4f((1.0 - out) * scattered * lost, 0.0));
 }

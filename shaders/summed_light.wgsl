@@ -1,7 +1,7 @@
 // Scattered light of all lights together: what the ray caster looks up.
 //
-// reads  fluence and flux of each light, for an irradiance of 1
-// writes rgba16float: fluence as a share of `scale`; flux along the axes of the volume, as a share of the mean fluence
+// reads  fluence of each light, for an irradiance of 1
+// writes rgba16float: fluence as a share of `scale`
 
 struct Summation {
     cells: vec3u,
@@ -13,7 +13,6 @@ struct Summation {
 @group(0) @binding(1) var<storage, read> irradiances: array<vec4f>;
 @group(0) @binding(2) var<storage, read> scattered: array<vec4f>;
 @group(0) @binding(3) var fluence: texture_storage_3d<rgba16float, write>;
-@group(0) @binding(4) var flux: texture_storage_3d<rgba16float, write>;
 
 @compute @workgroup_size(64)
 fn add_up(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -24,17 +23,9 @@ fn add_up(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gro
         return;
     }
     var sum = vec3f(0.0);
-    var along = vec3f(0.0);
     for (var light = 0u; light < summation.lights; light += 1u) {
-        let irradiance = irradiances[light].rgb;
-        let at = 2u * (light * count + index);
-        sum += irradiance * scattered[at].rgb;
-        along += dot(irradiance, vec3f(1.0 / 3.0)) * scattered[at + 1u].xyz;
+        sum += irradiances[light].rgb * scattered[light * count + index].rgb;
     }
-    let mean = dot(sum, vec3f(1.0 / 3.0));
     let cell = vec3u(index % n.x, (index / n.x) % n.y, index / (n.x * n.y));
     textureStore(fluence, cell, vec4f(sum, 0.0));
-    // No more can go one way than there is.
-    let share = along / max(mean, 1e-30);
-    textureStore(flux, cell, vec4f(share / max(length(share), 1.0), 0.0));
 }

@@ -66,8 +66,12 @@ pub fn all() -> Vec<Mirror> {
         passes::preclassify::VoxelsUniform::mirror(),
         passes::light_volume::sweep::ColumnsUniform::mirror(),
         passes::light_volume::sweep::SweepUniform::mirror(),
-        passes::scattered_light::ScatterSweepUniform::mirror(),
-        passes::scattered_light::SliceUniform::mirror(),
+        passes::light_network::levels::LevelUniform::mirror(),
+        passes::light_network::directions::FanUniform::mirror(),
+        passes::light_network::DiffusionUniform::mirror(),
+        passes::scattered_light::SourceUniform::mirror(),
+        passes::eye_light::sweep::ScatterSweepUniform::mirror(),
+        passes::eye_light::sweep::SliceUniform::mirror(),
         passes::eye_light::EyeSweepUniform::mirror(),
         passes::summed_light::SummationUniform::mirror(),
         passes::raycast::VolumeInstance::mirror(),
@@ -80,6 +84,7 @@ pub fn all() -> Vec<Mirror> {
 pub fn generated_modules() -> Vec<(&'static str, String)> {
     use crate::components::Classification::{Pre, PreIntegrated};
     use crate::gpu::Filtering::{Sampler, Shader};
+    use crate::passes::raycast::Scattered::{Nothing, TowardsEye};
     let count = passes::light_volume::through::VeilCount { volumes: 2, lights: 1 };
     // Behind the bindings of every shader that has these modules.
     let (volumes, first, classified) = (16, 18, 32);
@@ -92,7 +97,8 @@ pub fn generated_modules() -> Vec<(&'static str, String)> {
         light_volumes,
         veils,
         passes::volume_shadow::module(&[true, false], 36),
-        passes::raycast::scattered_module(&[true, false], 40),
+        passes::raycast::scattered_module(&[TowardsEye, Nothing], 40),
+        passes::scattered_light::leaning_module(true),
         passes::scattered_radiosity::sampling_module(&Default::default(), 5),
         passes::scattered_radiosity::listing_module(false),
     ]

@@ -137,6 +137,8 @@ pub(crate) struct FrameBuffers {
     pub lights: wgpu::Buffer,
     /// How many lights fit; shaders are made for it.
     pub light_capacity: usize,
+    /// How many there are.
+    pub light_count: u32,
 }
 
 /// The most lights in a scene: as many as fit in a uniform buffer everywhere.
@@ -234,6 +236,7 @@ fn upload_frame(
         frame: uniform_buffer(&gpu, "frame", &frame),
         lights: uniform_array(&gpu, "lights", &light_uniforms, light_capacity),
         light_capacity,
+        light_count: light_uniforms.len() as u32,
     });
 }
 

@@ -7,6 +7,7 @@ use glam::DVec3;
 use std::collections::HashSet;
 use std::f64::consts::PI;
 use support::Studio;
+use tyndall::optics::peak::Peak;
 
 /// A scene of one volume in parts, each of which a case can replace.
 #[derive(Clone)]
@@ -351,8 +352,9 @@ impl Furnace {
                         \"sun\": ( DirectionalLight: (direction: ({lx:?}, {ly:?}, {lz:?})) ),
                         \"v\": ( Volume: Raw(path: \"furnace.raw\", size: ({x}, {y}, {z}), format: F32),
                             TransferFunction: (domain: (0.0, 1.0), points: [(0.0, (1.0, 1.0, 1.0), {opacity:.17})], opacity_length: 0.01),
-                            VolumeLighting: {}, RayCast: (step: 0.25, early_termination: 1.0) ) }})",
-                    self.lighting
+                            VolumeLighting: {}, RayCast: (step: {:?}, early_termination: 1.0) ) }})",
+                    self.lighting,
+                    (0.1 / self.sigma).min(0.25)
                 ),
                 PIXELS,
                 PIXELS,
@@ -364,37 +366,35 @@ impl Furnace {
     }
 }
 
-/// The most by which it may be more, for slabs and for cubes. A few percent are meant, and kept where light enters slabs that are not opaque to
-/// a cell; cubes with light along an axis are the worst, since from their sides it spreads out too slowly.
-const MOST_EXCESS: [(u32, f64); 2] = [(4, 0.10), (12, 0.32)];
-
-/// What white cubes and slabs scatter and let through is what they receive, give or take what sweeps are off by.
+/// White cubes and slabs, thin and thick, return what they receive and no more: 0.3 % is what 24 views are off by.
 #[test]
 #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
-fn white_media_return_what_they_receive_but_for_the_error_of_sweeps() {
+fn white_media_never_return_more_than_they_receive() {
     let mut studio = Studio::new();
-    for (thickness, most) in MOST_EXCESS {
-        let mut worst = (f64::NEG_INFINITY, String::new());
-        let side = if thickness == 4 { 24 } else { thickness };
-        let size = [side, side, thickness];
+    let (mut worst, mut least) = ((f64::NEG_INFINITY, String::new()), (f64::INFINITY, String::new()));
+    for size in [[24, 24, 4], [12, 12, 12]] {
         for light in [DVec3::NEG_Z, DVec3::new(-0.7, 0.0, -0.7), DVec3::new(-0.5, -0.6, -0.7)] {
             for sigma in [0.05, 0.5, 5.0] {
                 for g in [0.0, -0.4, 0.4] {
                     let lighting = format!("LightVolume(g: {g:?})");
                     let furnace = Furnace { size, sigma, light: light.normalize(), lighting };
-                    let (scattered, straight) = (furnace.scattered(&mut studio), furnace.straight());
-                    let excess = scattered + straight - 1.0;
-                    let name = format!(
-                        "{size:?} sigma {sigma} g {g} in {light}: {scattered:.4} scattered, {straight:.4} straight"
-                    );
+                    let scattered = furnace.scattered(&mut studio);
+                    // What is scattered into a peak goes on with the light.
+                    let peak = Furnace { sigma: sigma * Peak::new(g).extinction(1.0), ..furnace };
+                    let excess = scattered + peak.straight() - 1.0;
+                    let name = format!("{size:?} sigma {sigma} g {g} in {light}: {scattered:.4} scattered");
                     eprintln!("{name}: {:+.1} %", 100.0 * excess);
                     if excess > worst.0 {
-                        worst = (excess, name);
+                        worst = (excess, name.clone());
+                    }
+                    if excess < least.0 {
+                        least = (excess, name);
                     }
                 }
             }
         }
-        eprintln!("worst excess: {worst:?}");
-        assert!(worst.0 < most, "{worst:?}");
     }
+    eprintln!("from {least:?} to {worst:?}");
+    assert!(worst.0 < 0.003, "{worst:?}");
+    assert!(least.0 > -0.07, "{least:?}");
 }

@@ -3,6 +3,8 @@
 
 #[path = "optics/boundary.rs"]
 mod boundary;
+#[path = "optics/diffusion.rs"]
+mod diffusion;
 #[path = "optics/dipoles.rs"]
 mod dipoles;
 #[path = "optics/energy.rs"]
@@ -13,8 +15,6 @@ mod phase;
 mod profiles;
 #[path = "optics/sampling.rs"]
 mod sampling;
-#[path = "optics/two_stream.rs"]
-mod two_stream;
 
 use glam::DVec3;
 use serde_json::Value;

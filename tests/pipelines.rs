@@ -52,17 +52,25 @@ fn every_pass_has_valid_pipelines_and_bindings() {
     check(&scene, &text, |_| EXPECTED.to_vec());
 }
 
-/// A pipeline for each use: volumes with and without a mesh in their light; sweeps away from the light and back.
-const EXPECTED_OF_LIGHT: [&str; 19] = [
+/// A pipeline for each use: volumes with and without a mesh in their light; the network, and light that diffuses in it.
+const EXPECTED_OF_LIGHT: [&str; 27] = [
     "gbuffer",
     "light_volume",
     "light_cells",
+    "light_network",
+    "light_network",
+    "light_network",
+    "light_network",
+    "light_escape",
     "scattered_light",
     "scattered_light",
-    "scattered_light",
-    "scattered_light",
-    "scattered_light",
-    "scattered_light",
+    "diffusion",
+    "diffusion",
+    "diffusion",
+    "diffusion",
+    "diffusion",
+    "diffusion",
+    "diffusion",
     "summed_light",
     "eye_light",
     "eye_light",

@@ -19,8 +19,6 @@ struct ScatterSweep {
     forwards: u32,
     // Variance across for a slice of the mean free path 1, in its unit times the slice's.
     spread: f32,
-    // Whether it is the first of the axes that are swept.
-    is_first: u32,
 }
 
 struct Slice {

@@ -15,7 +15,7 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 /// | | `resolution`: nodes per voxel along each axis, at which the light that arrives is kept | – | 1/8 to 1 | 1 |
 /// | `LightVolume` | `cone_angle`: half angle of the cone in which scattered light travels, or `Auto` | degrees | 1 to 89 | `Auto` |
 /// | | `resolution`: as above; scattered light is kept at a quarter of it | – | 1/8 to 1 | 1 |
-/// | | `blend`: sweep along every axis that the light leans to, not only the nearest | – | – | true |
+/// | | `blend`: count all faces through which light enters a cell, not only those across its nearest axis | – | – | true |
 /// | | `towards_eye`: sweep towards the viewer as well, so that forward scattering spreads what is behind | – | – | false |
 /// | | `gradient_specular`: strength of the highlight on surfaces in the field | – | at least 0 | 0 |
 /// | | `emission`: share of the colour that is emitted besides | – | at least 0 | 0 |
@@ -30,9 +30,10 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 /// In the other two the colour of the transfer function is the albedo, 0 to 1 in each channel (more counts as 1), and only lights give light.
 /// *Single scattering* is light that was scattered once: albedo p(g, cos) E exp(-tau) from each piece of the medium, with tau the optical
 /// depth towards the light and p Henyey and Greenstein's phase function. It is exact but for errors of second order in the voxel
-/// and the step of the ray. The *light volume* (after Ropinski and others 2010) adds light that was scattered more often, by sweeps through the volume away
-/// from the light and back: an approximation, see `docs/architecture.md` for how far off it is. `cone_angle: Auto` is 63 degrees, with
-/// which light spreads across as it diffuses in the medium; a narrower cone keeps it closer to its way.
+/// and the step of the ray. The *light volume* (after Ropinski and others 2010) adds light that was scattered more often: what does not
+/// escape diffuses ([`optics::diffusion`](crate::optics::diffusion)), an approximation that gives back no more light than it receives; see
+/// `docs/architecture.md` for how far off it is. `cone_angle: Auto` is 63 degrees, as far as light diffuses in the medium; a narrower cone keeps it
+/// closer to where it was scattered first.
 ///
 /// Volumes with one of these two shade the meshes of a scene and are shaded by them, unless the head of the scene says otherwise.
 ///
@@ -79,7 +80,7 @@ pub enum VolumeLighting {
         /// Nodes per voxel along each axis.
         #[reflect(default = "full", @Range::new(0.125, 1.0))]
         resolution: f32,
-        /// Whether all axes that the light leans to are swept.
+        /// Whether all faces count through which light enters a cell, not only those across its nearest axis.
         #[reflect(default = "yes")]
         blend: bool,
         /// Whether light is swept towards the viewer too.

@@ -19,6 +19,7 @@ sources! {
     "classified" => "shared/classified.wgsl",
     "classify" => "shared/classify.wgsl",
     "combine" => "combine.wgsl",
+    "diffusion" => "diffusion.wgsl",
     "dimmed_gbuffer" => "dimmed_gbuffer.wgsl",
     "estimator" => "shared/estimator.wgsl",
     "eye_light" => "eye_light.wgsl",
@@ -27,9 +28,13 @@ sources! {
     "fullscreen" => "shared/fullscreen.wgsl",
     "gather" => "gather.wgsl",
     "gbuffer" => "gbuffer.wgsl",
+    "level" => "shared/level.wgsl",
     "light_cells" => "light_cells.wgsl",
+    "light_escape" => "light_escape.wgsl",
+    "light_network" => "light_network.wgsl",
     "light_volume" => "light_volume.wgsl",
     "maps" => "shared/maps.wgsl",
+    "peak" => "shared/peak.wgsl",
     "phase" => "shared/phase.wgsl",
     "preclassify" => "preclassify.wgsl",
     "raycast" => "raycast.wgsl",
@@ -44,7 +49,6 @@ sources! {
     "surface" => "surface.wgsl",
     "sweep" => "shared/sweep.wgsl",
     "tonemap" => "tonemap.wgsl",
-    "two_stream" => "shared/two_stream.wgsl",
 }
 
 /// The text of a shader with all its imports in front of what needs them. `generated` are modules made for this use.

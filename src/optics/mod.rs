@@ -4,15 +4,16 @@
 //! point away from the surface; refracted directions point into the medium; `eta` is the index inside over the index outside.
 
 pub mod calibration;
+pub mod diffusion;
 pub mod dipole;
 pub mod fresnel;
 pub mod materials;
 pub mod medium;
 pub mod moments;
+pub mod peak;
 pub mod phase;
 pub mod preintegration;
 mod quadrature;
 pub mod sampling;
 pub mod transfer;
 pub mod transport;
-pub mod two_stream;

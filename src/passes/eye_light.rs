@@ -3,9 +3,11 @@
 //! Reads [`LightCells`], [`LightVolumes`] and [`SummedLight`]; writes [`EyeLight`], rgba16float, one texel a cell. Reruns when one of them
 //! changes, or the direction from the middle of the volume to the eye.
 
+pub mod sweep;
+
+use self::sweep::{AxisSweep, SliceUniform, slice_binding};
 use super::light_cells::LightCells;
 use super::light_volume::{LightVolume, LightVolumes, lighting_in_force, lookup, scene_from_texture};
-use super::scattered_light::{AxisSweep, SliceUniform, slice_binding};
 use super::summed_light::SummedLight;
 use super::volume_shadow::{self, VolumeShadow, VolumeShadows};
 use crate::components::{Placement, Projection, SceneSettings, Shading, VolumeLighting};

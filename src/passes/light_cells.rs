@@ -74,10 +74,14 @@ pub(crate) fn run(
     mut commands: Commands,
     (gpu, settings): (Res<Gpu>, Res<SceneSettings>),
     volumes: Volumes,
+    former: Query<Entity, (With<LightCells>, Without<LoadedVolume>)>,
     lights: Query<(), With<crate::components::DirectionalLight>>,
     mut averager: ResMut<CellAverager>,
     (mut timer, mut report, mut failure): (Option<ResMut<PassTimer>>, ResMut<Report>, ResMut<Failure>),
 ) {
+    for entity in &former {
+        commands.entity(entity).remove::<LightCells>();
+    }
     let mut held = 0;
     for (entity, loaded, classified, texture, lighting, shading, kept) in &volumes {
         let lighting = lighting_in_force(lighting, shading, &settings);

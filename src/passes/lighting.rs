@@ -20,16 +20,22 @@ pub(crate) struct Kinds {
     gradient: bool,
     /// Light that was scattered, once or more often.
     scattering: bool,
+    /// Lights, for volumes that scatter.
+    lights: u32,
     /// Light that was scattered more often.
     often: bool,
     /// Scattering that is not the same in all directions.
     leaning: bool,
+    /// Scattering often in a forward peak, which counts as none.
+    peak: bool,
+    /// Light that goes on towards the eye.
+    towards_eye: bool,
     /// Highlights in scattered light.
     highlights: bool,
 }
 
 impl Kinds {
-    pub(super) fn of(volumes: impl IntoIterator<Item = Lit>) -> Self {
+    pub(super) fn of(volumes: impl IntoIterator<Item = Lit>, lights: u32) -> Self {
         let mut kinds = Self::default();
         for lit in volumes {
             let once = lit.kind == SCATTERS_ONCE;
@@ -39,14 +45,27 @@ impl Kinds {
             kinds.scattering |= once || often;
             kinds.often |= often;
             kinds.leaning |= (once || often) && lit.g != 0.0;
+            kinds.peak |= lit.kind == SCATTERS && lit.g > 0.0;
+            kinds.towards_eye |= lit.kind == SCATTERS_TOWARDS_EYE;
             kinds.highlights |= often && lit.specular > 0.0;
         }
+        kinds.lights = if kinds.scattering { lights } else { 0 };
         kinds
     }
 
     /// For shaders that want everything.
     pub fn all() -> Self {
-        Self { lit: true, gradient: true, scattering: true, often: true, leaning: true, highlights: true }
+        Self {
+            lit: true,
+            gradient: true,
+            scattering: true,
+            lights: 2,
+            often: true,
+            leaning: true,
+            peak: true,
+            towards_eye: true,
+            highlights: true,
+        }
     }
 
     /// The WGSL module `lighting`.
@@ -57,6 +76,8 @@ impl Kinds {
             ("ANY_SCATTERING", self.scattering),
             ("ANY_OFTEN", self.often),
             ("ANY_LEANING", self.leaning),
+            ("ANY_PEAK", self.peak),
+            ("ANY_TOWARDS_EYE", self.towards_eye),
             ("ANY_HIGHLIGHT", self.highlights),
         ];
         let mut text = String::new();
@@ -64,6 +85,8 @@ impl Kinds {
             // Writing to a String cannot fail.
             let _ = writeln!(text, "const {name} = {value};");
         }
+        // A number that is known unrolls the loop over lights, which then fetches each as it is.
+        let _ = writeln!(text, "const LIGHTS = {}u;", self.lights);
         ("lighting", text)
     }
 }

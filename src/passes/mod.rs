@@ -9,6 +9,7 @@ pub mod eye_light;
 pub mod gbuffer;
 pub mod light_cells;
 pub mod light_gbuffer;
+pub mod light_network;
 pub mod light_volume;
 pub mod lighting;
 pub mod medium;
@@ -45,6 +46,7 @@ impl Plugin for ScatteringPlugin {
         app.init_resource::<light_volume::LightSweeper>()
             .init_resource::<dimmed_gbuffer::Dimmer>()
             .init_resource::<light_cells::CellAverager>()
+            .init_resource::<light_network::NetworkMaker>()
             .init_resource::<scattered_light::Scatterer>()
             .init_resource::<summed_light::Adder>()
             .init_resource::<eye_light::EyeSweeper>()
@@ -56,6 +58,7 @@ impl Plugin for ScatteringPlugin {
                     light_volume::run,
                     volume_shadow::run,
                     light_cells::run,
+                    light_network::run,
                     scattered_light::run,
                     summed_light::run,
                     eye_light::run,

@@ -22,6 +22,7 @@ use crate::gpu::{
     Draw, DrawDescriptor, Filtering, Gpu, GpuError, PassTimer, Target, binding, texture_of, uniform_array,
 };
 use crate::loading::LoadedVolume;
+use crate::optics::peak::Peak;
 use crate::render::Failure;
 use crate::scene::{Problem, Problems};
 use crate::sources::BrickRanges;
@@ -30,7 +31,7 @@ use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
-use glam::{DMat3, DVec3, Mat3, Mat4, UVec2, UVec3, Vec3, Vec4};
+use glam::{DVec3, Mat4, UVec2, UVec3, Vec3, Vec4};
 use std::fmt::Write;
 
 /// Casts rays through volumes.
@@ -74,8 +75,8 @@ struct Variant {
     kinds: Kinds,
     /// For each light volume of all volumes together whether meshes shadow it.
     light_volumes: Vec<bool>,
-    /// Which volumes have scattered light.
-    scattered: Vec<bool>,
+    /// What scattered light each volume has.
+    scattered: Vec<Scattered>,
 }
 
 /// The lookup tables and brick distances of all volumes.
@@ -118,7 +119,7 @@ mirror! {
         emission: f32,
         first_sweep: u32,
         fluence_scale: f32,
-        axes: Mat3,
+        peak_cap: f32,
         classification: u32,
         greatest_colour: f32,
         greatest_extinction: f32,
@@ -180,12 +181,11 @@ fn run(
         return;
     }
     let timing = timer.as_mut().and_then(|timer| timer.time("raycast"));
-    let drawn = prepare(&gpu, &picture, &settings, &volumes, frame.light_capacity, &mut caster, &mut report)
-        .map(|()| {
-            let instances = instances(&view, &settings, &volumes, &caster);
-            draw(&gpu, &frame, &settings, &volumes, &instances, &surface, &caster, timing);
-            report.ran("raycast", &[("pixels", u64::from(picture.size.x) * u64::from(picture.size.y))]);
-        });
+    let drawn = prepare(&gpu, &picture, &settings, &volumes, &frame, &mut caster, &mut report).map(|()| {
+        let instances = instances(&view, &settings, &volumes, &caster);
+        draw(&gpu, &frame, &settings, &volumes, &instances, &surface, &caster, timing);
+        report.ran("raycast", &[("pixels", u64::from(picture.size.x) * u64::from(picture.size.y))]);
+    });
     failure.keep(drawn);
 }
 
@@ -193,7 +193,7 @@ fn run(
 fn too_many(volumes: &[VolumeData], limit: u32) -> Option<Problem> {
     let classified =
         volumes.iter().filter(|volume| classification_of(volume) != Classification::Post).count();
-    let scattered = 2 * volumes.iter().filter(|volume| volume.summed.is_some()).count();
+    let scattered: usize = volumes.iter().map(|volume| scattered_of(volume).textures()).sum();
     let light = light_volumes(volumes).len() + shadows(volumes).iter().flatten().count() + scattered;
     if volumes.len() + light + classified <= limit as usize {
         return None;
@@ -206,8 +206,17 @@ fn too_many(volumes: &[VolumeData], limit: u32) -> Option<Problem> {
         message += &format!(", {classified} of them twice for their classification");
     }
     message += &format!("; this adapter can show {limit} at once");
-    let help = "merge volumes, leave some out, or classify them by `Post`; a volume that scatters has a texture for each light, and a light volume two more";
+    let help = "merge volumes, leave some out, or classify them by `Post`; a volume that scatters has a texture for each light, a light volume one more, and another with `towards_eye`";
     Some(Problem::error(message).help(help).on(volumes[volumes.len() - 1].entity, "Volume"))
+}
+
+/// What there is of the light that a volume scatters often.
+fn scattered_of(volume: &VolumeData) -> Scattered {
+    match (volume.summed, volume.eye_light) {
+        (None, _) => Scattered::Nothing,
+        (Some(_), None) => Scattered::Fluence,
+        (Some(_), Some(_)) => Scattered::TowardsEye,
+    }
 }
 
 /// How a volume is classified: as it asks, once what that takes is there.
@@ -225,15 +234,16 @@ fn prepare(
     picture: &Picture,
     settings: &SceneSettings,
     volumes: &[VolumeData],
-    light_capacity: usize,
+    frame: &FrameBuffers,
     caster: &mut RayCaster,
     report: &mut Report,
 ) -> Result<(), GpuError> {
     let filtering = volumes.iter().map(|volume| volume.texture.format.filtering).collect();
-    let kinds = Kinds::of(volumes.iter().map(|volume| lit(volume, settings)));
+    let kinds = Kinds::of(volumes.iter().map(|volume| lit(volume, settings)), frame.light_count);
     let light_volumes = shadows(volumes).iter().map(Option::is_some).collect();
-    let scattered = volumes.iter().map(|volume| volume.summed.is_some()).collect();
+    let scattered = volumes.iter().map(scattered_of).collect();
     let classifications = volumes.iter().map(classification_of).collect();
+    let light_capacity = frame.light_capacity;
     let variant = Variant { filtering, classifications, light_capacity, kinds, light_volumes, scattered };
     if caster.draw.as_ref().is_none_or(|(made_for, _)| *made_for != variant) {
         caster.draw = Some((variant.clone(), make(gpu, &variant)?));
@@ -281,8 +291,8 @@ fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
         .map(|filtering| binding::texture(wgpu::TextureViewDimension::D3, *filtering == Filtering::Sampler));
     let light_volumes = lookup::bindings(variant.light_volumes.len(), lookup::filtering(gpu));
     let shadows = volume_shadow::bindings(&variant.light_volumes);
-    let scattered = variant.scattered.iter().filter(|scattered| **scattered);
-    let scattered = scattered.flat_map(|_| [binding::texture(wgpu::TextureViewDimension::D3, true); 2]);
+    let scattered: usize = variant.scattered.iter().map(|scattered| scattered.textures()).sum();
+    let scattered = std::iter::repeat_n(binding::texture(wgpu::TextureViewDimension::D3, true), scattered);
     let first = FIXED_BINDINGS + variant.filtering.len();
     let first_shadow = first + light_volumes.len();
     let first_classified = first_shadow + shadows.len();
@@ -354,22 +364,42 @@ pub(crate) fn volumes_module(filtering: &[Filtering], first_binding: usize) -> S
     text
 }
 
-/// The WGSL module `scattered`: `fluence_at(volume, place)` and `flux_at`, of the volumes that have scattered light.
-pub(crate) fn scattered_module(scattered: &[bool], first: usize) -> (&'static str, String) {
+/// What is looked up of light that was scattered before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scattered {
+    /// Nothing.
+    Nothing,
+    /// Fluence.
+    Fluence,
+    /// Fluence, and light that goes on towards the eye.
+    TowardsEye,
+}
+
+impl Scattered {
+    fn textures(self) -> usize {
+        match self {
+            Self::Nothing => 0,
+            Self::Fluence => 1,
+            Self::TowardsEye => 2,
+        }
+    }
+}
+
+/// The WGSL module `scattered`: `fluence_at(volume, place)` and `eye_light_at`, of the volumes that have scattered light.
+pub(crate) fn scattered_module(scattered: &[Scattered], first: usize) -> (&'static str, String) {
     let mut text = String::new();
-    let (mut fluence, mut flux) = (String::new(), String::new());
     let mut binding = first;
-    for (index, _) in scattered.iter().enumerate().filter(|(_, scattered)| **scattered) {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "@group(0) @binding({binding}) var fluence_{index}: texture_3d<f32>;");
-        let _ = writeln!(text, "@group(0) @binding({}) var flux_{index}: texture_3d<f32>;", binding + 1);
-        for (name, cases) in [("fluence", &mut fluence), ("flux", &mut flux)] {
+    let mut cases = [String::new(), String::new()];
+    for (index, scattered) in scattered.iter().enumerate() {
+        for (name, cases) in ["fluence", "eye_light"].iter().zip(&mut cases).take(scattered.textures()) {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "@group(0) @binding({binding}) var {name}_{index}: texture_3d<f32>;");
             let sample = format!("textureSampleLevel({name}_{index}, linear_sampler, place, 0.0).rgb");
             let _ = writeln!(cases, "        case {index}u: {{ return {sample}; }}");
+            binding += 1;
         }
-        binding += 2;
     }
-    for (name, cases) in [("fluence", fluence), ("flux", flux)] {
+    for (name, cases) in ["fluence", "eye_light"].iter().zip(cases) {
         let _ = write!(
             text,
             "fn {name}_at(volume: u32, place: vec3f) -> vec3f {{\n    switch volume {{\n{cases}        \
@@ -496,9 +526,7 @@ fn instance(
         emission: lit.emission,
         first_sweep,
         fluence_scale: summed.map_or(0.0, |summed| summed.scale),
-        axes: DMat3::from_cols(axes.x_axis.normalize(), axes.y_axis.normalize(), axes.z_axis.normalize())
-            .transpose()
-            .as_mat3(),
+        peak_cap: Peak::new(f64::from(lit.g)).cap.min(f64::from(f32::MAX)) as f32,
         classification: classification::number(classification_of(volume)),
         greatest_colour,
         greatest_extinction,
@@ -607,11 +635,11 @@ fn draw(
         Classification::PreIntegrated => volume.pairs.map(|pairs| &pairs.view),
     });
     resources.extend(classified.map(wgpu::BindingResource::TextureView));
-    for (summed, eye_light) in volumes.iter().filter_map(|volume| Some((volume.summed?, volume.eye_light))) {
-        let second = eye_light.map_or(&summed.flux, |eye_light| &eye_light.grid);
-        resources
-            .extend([&summed.fluence, second].map(|grid| wgpu::BindingResource::TextureView(&grid.view)));
-    }
+    let scattered = volumes.iter().filter_map(|volume| Some((volume.summed?, volume.eye_light)));
+    let grids = scattered.flat_map(|(summed, eye_light)| {
+        std::iter::once(&summed.fluence).chain(eye_light.map(|eye_light| &eye_light.grid))
+    });
+    resources.extend(grids.map(|grid| wgpu::BindingResource::TextureView(&grid.view)));
     draw.cover(gpu, &resources, &target.view, timing);
 }
 

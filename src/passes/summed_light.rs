@@ -1,12 +1,10 @@
 //! Scattered light of all lights together, as the ray caster looks it up.
 //!
-//! Reads [`ScatteredLight`] and the irradiance of the lights; writes [`SummedLight`], rgba16float, one texel a cell: the fluence, and for media
-//! that do not scatter evenly the flux. Reruns when either changes; a light's colour changes nothing before this pass.
+//! Reads [`ScatteredLight`] and the irradiance of the lights; writes [`SummedLight`], rgba16float, one texel a cell: the fluence. Reruns when either changes; a light's colour changes nothing before this pass.
 
 use super::light_cells::LightCells;
-use super::light_volume::lighting_in_force;
 use super::scattered_light::ScatteredLight;
-use crate::components::{DirectionalLight, SceneSettings, Shading, VolumeLighting};
+use crate::components::DirectionalLight;
 use crate::gpu::{
     Gpu, GpuError, Grid, Invocations, Kernel, KernelDescriptor, PassTimer, binding, storage, storage_of,
     uniform_buffer,
@@ -21,11 +19,9 @@ use glam::{UVec3, Vec3, Vec4};
 pub(crate) struct SummedLight {
     /// Fluence, as a share of `scale`.
     pub fluence: Grid,
-    /// Flux along the axes of the volume, as a share of the mean fluence; one texel where nobody asks for it.
-    pub flux: Grid,
     /// Greatest irradiance of a light.
     pub scale: f32,
-    made: (Vec<u64>, Vec<Vec3>, bool),
+    made: (Vec<u64>, Vec<Vec3>),
     lights: Vec<Entity>,
     /// Counts up whenever the texels change.
     pub version: u64,
@@ -57,22 +53,12 @@ pub(crate) struct Adder {
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-type Volumes<'w, 's> = Query<
-    'w,
-    's,
-    (
-        Entity,
-        &'static VolumeLighting,
-        Option<&'static Shading>,
-        &'static LightCells,
-        &'static ScatteredLight,
-        Option<&'static SummedLight>,
-    ),
->;
+type Volumes<'w, 's> =
+    Query<'w, 's, (Entity, &'static LightCells, &'static ScatteredLight, Option<&'static SummedLight>)>;
 
 pub(crate) fn run(
     mut commands: Commands,
-    (gpu, settings): (Res<Gpu>, Res<SceneSettings>),
+    gpu: Res<Gpu>,
     volumes: Volumes,
     former: Query<Entity, (With<SummedLight>, Without<LightCells>)>,
     lights: Query<&DirectionalLight>,
@@ -83,21 +69,19 @@ pub(crate) fn run(
         commands.entity(entity).remove::<SummedLight>();
     }
     let mut held = 0;
-    for (entity, lighting, shading, cells, scattered, kept) in &volumes {
+    for (entity, cells, scattered, kept) in &volumes {
         let irradiance = |light| lights.get(light).map_or(Vec3::ZERO, |light| light.irradiance);
         let irradiances: Vec<Vec3> = scattered.0.iter().map(|layer| irradiance(layer.light)).collect();
         let versions: Vec<u64> = scattered.0.iter().map(|layer| layer.version).collect();
-        let lighting = lighting_in_force(lighting, shading, &settings);
-        let leans = matches!(lighting, VolumeLighting::LightVolume { g, .. } if g != 0.0);
-        let made = (versions, irradiances, leans);
+        let made = (versions, irradiances);
         if let Some(kept) = kept.filter(|kept| kept.made == made) {
-            held += kept.fluence.bytes() + kept.flux.bytes();
+            held += kept.fluence.bytes();
             continue;
         }
         let timing = timer.as_mut().and_then(|timer| timer.time_compute("summed_light"));
         match sum(&gpu, &mut adder, cells.grid.size(), scattered, made, timing, &mut report) {
             Ok(summed) => {
-                held += summed.fluence.bytes() + summed.flux.bytes();
+                held += summed.fluence.bytes();
                 commands.entity(entity).insert(summed);
             }
             Err(error) => failure.keep(Err(error)),
@@ -111,7 +95,7 @@ fn sum(
     adder: &mut Adder,
     cells: UVec3,
     scattered: &ScatteredLight,
-    made: (Vec<u64>, Vec<Vec3>, bool),
+    made: (Vec<u64>, Vec<Vec3>),
     timing: Option<wgpu::ComputePassTimestampWrites>,
     report: &mut Report,
 ) -> Result<SummedLight, GpuError> {
@@ -119,10 +103,9 @@ fn sum(
         adder.kernel = Some(make(gpu)?);
         report.pipelines.push("summed_light");
     }
-    let (_, irradiances, leans) = &made;
+    let (_, irradiances) = &made;
     let scale = irradiances.iter().map(|irradiance| irradiance.max_element()).fold(0.0, f32::max);
     let fluence = Grid::new(gpu, "fluence", cells, FORMAT)?;
-    let flux = Grid::new(gpu, "flux", if *leans { cells } else { UVec3::ONE }, FORMAT)?;
     let mut factors: Vec<Vec4> = irradiances
         .iter()
         .map(|irradiance| (*irradiance / scale.max(f32::MIN_POSITIVE)).extend(0.0))
@@ -131,19 +114,18 @@ fn sum(
     factors.push(Vec4::ZERO);
     let factors = storage_of(gpu, "irradiances", bytemuck::cast_slice(&factors));
     let count = u64::from(cells.element_product());
-    let layers = storage(gpu, "layers of lights", 32 * count * scattered.0.len().max(1) as u64);
+    let layers = storage(gpu, "layers of lights", 16 * count * scattered.0.len().max(1) as u64);
     let uniform = SummationUniform { cells, lights: irradiances.len() as u32 };
     let uniform = uniform_buffer(gpu, "summation", &uniform);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     for (index, layer) in scattered.0.iter().enumerate() {
-        encoder.copy_buffer_to_buffer(&layer.cells, 0, &layers, 32 * count * index as u64, 32 * count);
+        encoder.copy_buffer_to_buffer(&layer.cells, 0, &layers, 16 * count * index as u64, 16 * count);
     }
     let resources = [
         uniform.as_entire_binding(),
         factors.as_entire_binding(),
         layers.as_entire_binding(),
         wgpu::BindingResource::TextureView(&fluence.view),
-        wgpu::BindingResource::TextureView(&flux.view),
     ];
     if let Some(kernel) = &adder.kernel {
         kernel.run(gpu, &mut encoder, &resources, Invocations::Count(count as u32), timing);
@@ -152,7 +134,7 @@ fn sum(
     report.ran("summed_light", &[("cells", count)]);
     adder.version += 1;
     let lights = scattered.0.iter().map(|layer| layer.light).collect();
-    Ok(SummedLight { fluence, flux, scale, made, lights, version: adder.version })
+    Ok(SummedLight { fluence, scale, made, lights, version: adder.version })
 }
 
 fn make(gpu: &Gpu) -> Result<Kernel, GpuError> {
@@ -162,13 +144,7 @@ fn make(gpu: &Gpu) -> Result<Kernel, GpuError> {
             name: "summed_light",
             generated: &[],
             entry_point: "add_up",
-            bindings: &[
-                binding::UNIFORM,
-                binding::STORAGE,
-                binding::STORAGE,
-                binding::grid_out(FORMAT),
-                binding::grid_out(FORMAT),
-            ],
+            bindings: &[binding::UNIFORM, binding::STORAGE, binding::STORAGE, binding::grid_out(FORMAT)],
         },
     )
 }

@@ -40,20 +40,23 @@ pub(crate) fn light_volumes_module(
             Filtering::Sampler => format!("textureSampleLevel(light_{index}, repeating, at, 0.0).r"),
             Filtering::Shader => {
                 text.push_str(&eight_loads(index));
-                format!("mean_{index}(sweep, at)")
+                format!("mean_{index}(sweeps[{index}], at)")
             }
         };
         let label = if index == 0 { "default".into() } else { format!("case {index}u") };
-        let _ = writeln!(cases, "        {label}: {{ mean = {value}; }}");
+        // Of each the number as it is: software adapters fetch what an index points at lane by lane.
+        let _ = writeln!(
+            cases,
+            "        {label}: {{
+            let at = (sweeps[{index}].texel_from_texture * vec4f(place, 1.0)).xyz;
+            return {value} * light_reach(sweeps[{index}], place);
+        }}"
+        );
     }
     let _ = write!(
         text,
         "fn light_depth(index: u32, place: vec3f) -> f32 {{
-    let sweep = sweeps[index];
-    let at = (sweep.texel_from_texture * vec4f(place, 1.0)).xyz;
-    var mean = 0.0;
     switch index {{\n{cases}    }}
-    return mean * light_reach(sweep, place);
 }}
 fn light_left(index: u32, place: vec3f) -> f32 {{
     return exp(-light_depth(index, place));

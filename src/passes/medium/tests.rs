@@ -35,7 +35,6 @@ mod energy;
 mod fresnel;
 mod phase;
 mod sweep;
-mod two_stream;
 
 /// The cases of a file of truth.
 macro_rules! truth {
@@ -69,7 +68,7 @@ struct Case {
 const FRAME: &str = "
 #import bssrdf
 #import phase
-#import two_stream
+#import peak
 
 struct Case {
     between: vec3f,
