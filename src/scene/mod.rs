@@ -10,6 +10,8 @@
 mod advice;
 mod document;
 mod edit;
+mod frame;
+mod loader;
 mod names;
 mod parts;
 mod problem;
@@ -22,4 +24,4 @@ mod wanted;
 pub use document::{Override, SceneComponent, SceneDocument, SceneEntity};
 pub use names::nearest;
 pub use problem::{Place, Problem, Problems, Severity, SourceFile};
-pub use reconcile::{SceneEntities, reconcile};
+pub use reconcile::{Changes, SceneEntities, reconcile, reconcile_after};
