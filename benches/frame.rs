@@ -4,6 +4,7 @@
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
 use bevy_app::App;
+use bevy_ecs::reflect::AppTypeRegistry;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::{UVec2, Vec3};
 use std::fmt::Write;
@@ -13,6 +14,7 @@ use tyndall::components::{ControlPoint, TransferFunction};
 use tyndall::gpu::{Gpu, GpuOptions};
 use tyndall::optics::preintegration::Preintegration;
 use tyndall::optics::transfer::LookupTable;
+use tyndall::scene::{self, SceneDocument};
 use tyndall::sources::{Samples, VolumeData};
 use tyndall::{Picture, TyndallPlugins, render};
 
@@ -41,26 +43,50 @@ fn scan(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn read(criterion: &mut Criterion) {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("many.ron");
+/// A scene of 10,000 entities, of which one has this radius.
+fn many(radius: f32) -> String {
     let mut text = String::from("(entities: {\n");
     for index in 0..10_000 {
+        let radius = if index == 5_000 { radius } else { 1.0 };
         let _ = writeln!(
             text,
-            "\"ball {index}\": ( Transform: (translation: ({index}.0, 0.0, 0.0)), Mesh: Sphere(subdivisions: 0) ), // a ball"
+            "\"ball {index}\": ( Transform: (translation: ({index}.0, 0.0, 0.0)), Mesh: Sphere(radius: {radius:?}, subdivisions: 0) ), // a ball"
         );
     }
     text.push_str("})\n");
-    std::fs::write(&path, text).expect("the scene is written");
+    text
+}
+
+fn read(criterion: &mut Criterion) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("many.ron");
+    let write = |radius| std::fs::write(&path, many(radius)).expect("the scene is written");
+    write(1.0);
     let mut app = App::new();
     app.add_plugins(TyndallPlugins);
-    criterion.benchmark_group("scene of 10,000 entities").sample_size(10).bench_function(
-        "read and reconcile",
-        |bench| {
-            bench.iter(|| render::load_scene(&mut app, &path, &[]));
-        },
-    );
+    let mut group = criterion.benchmark_group("scene of 10,000 entities");
+    group.sample_size(10);
+    group.bench_function("read and reconcile", |bench| {
+        bench.iter(|| render::load_scene(&mut app, &path, &[]));
+    });
+    let registry = app.world().resource::<AppTypeRegistry>().clone();
+    let registry = registry.read();
+    let before = SceneDocument::load(&path, &registry, &[]);
+    write(2.0);
+    group.bench_function("read again with one changed", |bench| {
+        bench.iter(|| SceneDocument::load_after(&path, &registry, &[], Some(&before)));
+    });
+    let after = SceneDocument::load_after(&path, &registry, &[], Some(&before));
+    scene::reconcile(app.world_mut(), &before);
+    group.bench_function("reconcile with one changed, there and back", |bench| {
+        bench.iter(|| {
+            let world = app.world_mut();
+            let there = scene::reconcile_after(world, &after, Some(&before));
+            let back = scene::reconcile_after(world, &before, Some(&after));
+            assert_eq!((there.written, back.written), (1, 1));
+        });
+    });
+    group.finish();
 }
 
 fn draw(criterion: &mut Criterion) {

@@ -1,7 +1,7 @@
 //! How the framework is put together: stages, and the plugins of the framework itself.
 
 use crate::{components, loading, passes, render, report::Report, scene, view};
-use bevy_app::{App, Plugin, PluginGroup, PluginGroupBuilder, Update};
+use bevy_app::{App, First, Last, Plugin, PluginGroup, PluginGroupBuilder, Update};
 use bevy_ecs::prelude::*;
 
 /// The stages of an update, in order. Systems of plugins join one with `.in_set(Stage::Animate)`.
@@ -95,6 +95,8 @@ impl Plugin for ScenePlugin {
             .init_resource::<SceneTime>()
             .init_resource::<Report>()
             .init_resource::<render::Failure>()
+            .add_systems(First, |mut problems: ResMut<scene::Problems>| problems.forget_update())
+            .add_systems(Last, scene::watch_assets.run_if(resource_exists::<scene::AssetWatch>))
             .add_systems(Update, (components::place, components::aim).in_set(Stage::Place));
     }
 }

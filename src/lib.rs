@@ -24,6 +24,7 @@
 //! |---|---|
 //! | write scenes | [`components`]: each is documented with its fields, units, ranges, defaults and RON |
 //! | draw from a program | [`render`], [`gpu`]; `examples/render_scene.rs`, `examples/build_in_code.rs` |
+//! | follow a scene's files while they are edited | [`scene::LiveScene`] |
 //! | add components and systems | [`prelude`], [`Stage`]; `plugins/README.md` |
 //! | make a command line with plugins of your own | [`cli::run`] |
 //!

@@ -2,17 +2,21 @@
 
 use crate::Stage;
 use crate::components::{Auto, Mesh, Placement, Subsurface, Volume};
-use crate::scene::{Problem, Problems};
+use crate::scene::{EntityProblems, Problem};
+use crate::sources::trail::{self, FileState, Trail};
 use crate::sources::{self, LayoutError, MeshData, MeshStatistics, RawLayout, SourceError, VolumeData};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
 use glam::{DVec3, Vec3};
+use std::collections::{BTreeMap, HashSet};
+use std::path::{Path, PathBuf};
 
 /// Reads meshes and volumes when the components that name them change.
 pub(crate) struct LoadingPlugin;
 
 impl Plugin for LoadingPlugin {
     fn build(&self, app: &mut App) {
+        app.add_message::<FileChanged>();
         app.add_systems(Update, (unload, load_meshes, load_volumes).chain().in_set(Stage::Load));
     }
 }
@@ -67,49 +71,107 @@ pub(crate) fn placed_corners(placement: &Placement, bounds: (Vec3, Vec3)) -> imp
     corners(bounds).map(move |corner| scene_from_entity.transform_point3(corner))
 }
 
+/// A file that a component named, or that was read for one, has changed on disk. Systems that read files read again what this one was
+/// part of; the components themselves stay as they are.
+#[derive(Message, Clone, Debug, PartialEq, Eq)]
+pub struct FileChanged(pub PathBuf);
+
+/// The files that were read for the components of an entity, by the name of the component: what is watched while a scene is live.
+/// Systems of plugins that read files say so here.
+#[derive(Component, Clone, Debug, Default, PartialEq)]
+pub struct FilesRead(BTreeMap<&'static str, Trail>);
+
+impl FilesRead {
+    /// Replaces what was read for a component earlier.
+    pub fn set(commands: &mut Commands, entity: Entity, component: &'static str, files: Trail) {
+        commands.queue(move |world: &mut World| {
+            let Ok(mut entity) = world.get_entity_mut(entity) else { return };
+            match entity.get_mut::<Self>() {
+                Some(mut read) if read.0.get(component) != Some(&files) => {
+                    read.0.insert(component, files);
+                }
+                Some(_) => {}
+                None if files.is_empty() => {}
+                None => {
+                    entity.insert(Self(BTreeMap::from([(component, files)])));
+                }
+            }
+        });
+    }
+
+    /// The files that were read for a component.
+    pub fn of(&self, component: &str) -> Option<&Trail> {
+        self.0.get(component)
+    }
+
+    /// The files that were read for any component.
+    pub fn all(&self) -> impl Iterator<Item = (&PathBuf, &FileState)> {
+        self.0.values().flatten()
+    }
+
+    /// Whether any of these files was read for a component.
+    fn has_any(&self, component: &str, files: &HashSet<&Path>) -> bool {
+        self.of(component).is_some_and(|read| read.keys().any(|file| files.contains(file.as_path())))
+    }
+}
+
 fn load_meshes(
     mut commands: Commands,
     meshes: Query<(Entity, Ref<Mesh>, Option<&LoadedMesh>), Or<(Changed<Mesh>, Added<Subsurface>)>>,
-    mut problems: ResMut<Problems>,
+    all: Query<(Entity, &Mesh, &FilesRead)>,
+    mut changed: MessageReader<FileChanged>,
 ) {
-    for (entity, mesh, loaded) in &meshes {
-        // What becomes translucent is read again if it was let go of: it is to be refined.
-        if !mesh.is_changed() && loaded.is_none_or(|loaded| loaded.data.is_some()) {
-            continue;
-        }
-        let mesh = &*mesh;
-        if let Some(problem) = unsupported(mesh) {
-            problems.0.push(problem.on(entity, "Mesh.0"));
-            continue;
-        }
-        match read_mesh(mesh) {
+    // What becomes translucent is read again if it was let go of: it is to be refined.
+    let is_due = |mesh: &Ref<Mesh>, loaded: Option<&LoadedMesh>| {
+        mesh.is_changed() || loaded.is_some_and(|loaded| loaded.data.is_none())
+    };
+    let due = meshes.iter().filter(|(_, mesh, loaded)| is_due(mesh, *loaded));
+    let mut due: BTreeMap<Entity, &Mesh> = due.map(|(entity, mesh, _)| (entity, mesh.into_inner())).collect();
+    let files: HashSet<&Path> = changed.read().map(|file| file.0.as_path()).collect();
+    if !files.is_empty() {
+        let stale = all.iter().filter(|(.., read)| read.has_any("Mesh", &files));
+        due.extend(stale.map(|(entity, mesh, _)| (entity, mesh)));
+    }
+    for (entity, mesh) in due {
+        let (read, files) = trail::follow(|| read_mesh(mesh));
+        let problems = match read {
             Ok(data) => {
-                problems
-                    .0
-                    .extend(data.notes.iter().map(|note| Problem::note(note.clone()).on(entity, "Mesh")));
+                let note = |note: &String| Problem::note(note.clone()).on(entity, "Mesh");
+                let problems = data.notes.iter().map(note).collect();
                 let bounds = data.bounds().unwrap_or_default();
                 commands.entity(entity).insert(LoadedMesh { data: Some(data), bounds });
+                problems
             }
-            // `Mesh.0` is the path of a file.
-            Err(error) => problems.0.push(Problem::error(error.to_string()).on(entity, "Mesh.0")),
-        }
+            // What was loaded last stays. `Mesh.0` is the path of a file.
+            Err(problem) => vec![problem.on(entity, "Mesh.0")],
+        };
+        FilesRead::set(&mut commands, entity, "Mesh", files);
+        EntityProblems::set(&mut commands, entity, "load_meshes", problems);
     }
 }
 
 /// What a mesh file that is there, but is no OBJ file by its name, is told.
-fn unsupported(mesh: &Mesh) -> Option<Problem> {
-    let Mesh::File(path) = mesh else { return None };
-    let ending = path.path().extension()?.to_string_lossy();
-    if ending.eq_ignore_ascii_case("obj") || !path.path().is_file() {
+fn unsupported(path: &Path) -> Option<Problem> {
+    let ending = path.extension()?.to_string_lossy();
+    if ending.eq_ignore_ascii_case("obj") {
         return None;
     }
-    let message = format!("{}: expected an .obj file, found .{ending}", path.path().display());
+    trail::note(path);
+    if !path.is_file() {
+        return None;
+    }
+    let message = format!("{}: expected an .obj file, found .{ending}", path.display());
     Some(Problem::error(message).help("export the mesh as Wavefront OBJ"))
 }
 
-fn read_mesh(mesh: &Mesh) -> Result<MeshData, SourceError> {
+fn read_mesh(mesh: &Mesh) -> Result<MeshData, Box<Problem>> {
     Ok(match mesh {
-        Mesh::File(path) => sources::read_obj(path.path())?,
+        Mesh::File(path) => match unsupported(path.path()) {
+            Some(problem) => return Err(Box::new(problem)),
+            None => {
+                sources::read_obj(path.path()).map_err(|error| Box::new(Problem::error(error.to_string())))?
+            }
+        },
         Mesh::Sphere { radius, subdivisions } => sources::procedural::sphere(*radius, *subdivisions),
         Mesh::Box { size } => sources::procedural::cuboid(*size),
         Mesh::Plane { size } => sources::procedural::plane(*size),
@@ -120,30 +182,42 @@ fn read_mesh(mesh: &Mesh) -> Result<MeshData, SourceError> {
 fn load_volumes(
     mut commands: Commands,
     volumes: Query<(Entity, &Volume), Changed<Volume>>,
-    mut problems: ResMut<Problems>,
+    all: Query<(Entity, &Volume, &FilesRead)>,
+    mut changed: MessageReader<FileChanged>,
 ) {
-    for (entity, volume) in &volumes {
-        match read_volume(volume) {
-            Ok(data) => {
-                for note in &data.notes {
-                    problems.0.push(Problem::note(note.clone()).on(entity, "Volume"));
-                }
-                if data.non_finite > 0 {
-                    let note = format!(
-                        "{} of {} samples are not finite; they are drawn as transparent",
-                        data.non_finite,
-                        data.samples.len()
-                    );
-                    problems.0.push(Problem::note(note).on(entity, "Volume"));
-                }
-                commands.entity(entity).insert(LoadedVolume { data, has_samples: true });
-            }
-            Err(error) => {
-                let field = field_at_fault(volume, &error);
-                problems.0.push(Problem::error(error.to_string()).on(entity, field));
-            }
-        }
+    let mut due: BTreeMap<Entity, &Volume> = volumes.iter().collect();
+    let files: HashSet<&Path> = changed.read().map(|file| file.0.as_path()).collect();
+    if !files.is_empty() {
+        let stale = all.iter().filter(|(.., read)| read.has_any("Volume", &files));
+        due.extend(stale.map(|(entity, volume, _)| (entity, volume)));
     }
+    for (entity, volume) in due {
+        let (read, files) = trail::follow(|| read_volume(volume));
+        let problems = match read {
+            Ok(data) => {
+                let problems = volume_notes(&data).map(|note| note.on(entity, "Volume")).collect();
+                commands.entity(entity).insert(LoadedVolume { data, has_samples: true });
+                problems
+            }
+            // What was loaded last stays.
+            Err(error) => {
+                vec![Problem::error(error.to_string()).on(entity, field_at_fault(volume, &error))]
+            }
+        };
+        FilesRead::set(&mut commands, entity, "Volume", files);
+        EntityProblems::set(&mut commands, entity, "load_volumes", problems);
+    }
+}
+
+fn volume_notes(data: &VolumeData) -> impl Iterator<Item = Problem> {
+    let unfit = (data.non_finite > 0).then(|| {
+        format!(
+            "{} of {} samples are not finite; they are drawn as transparent",
+            data.non_finite,
+            data.samples.len()
+        )
+    });
+    data.notes.iter().cloned().chain(unfit).map(Problem::note)
 }
 
 /// The field of a [`Volume`] that an error is about.
@@ -166,9 +240,13 @@ fn unload(
 ) {
     for entity in meshes.read() {
         commands.entity(entity).try_remove::<LoadedMesh>();
+        FilesRead::set(&mut commands, entity, "Mesh", Trail::new());
+        EntityProblems::set(&mut commands, entity, "load_meshes", Vec::new());
     }
     for entity in volumes.read() {
         commands.entity(entity).try_remove::<LoadedVolume>();
+        FilesRead::set(&mut commands, entity, "Volume", Trail::new());
+        EntityProblems::set(&mut commands, entity, "load_volumes", Vec::new());
     }
 }
 

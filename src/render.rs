@@ -3,7 +3,7 @@
 use crate::gpu::{Gpu, GpuError, PassTimer, read_texture};
 use crate::passes::{raycast::RayCaster, surface::Surface, tonemap::Tonemap};
 use crate::report::Report;
-use crate::scene::{self, Override, Problem, Problems, SceneDocument, SceneEntities};
+use crate::scene::{self, EntityProblems, Override, Problem, Problems, SceneDocument, Severity};
 use crate::view::Picture;
 use bevy_app::App;
 use bevy_ecs::prelude::*;
@@ -71,15 +71,33 @@ pub fn load_scene(app: &mut App, path: &Path, overrides: &[Override]) -> SceneDo
 
 /// The problems of the scene so far, those found after reading with the places that the document knows for them.
 pub fn problems(world: &World, document: &SceneDocument) -> Vec<Problem> {
-    let names = world.resource::<SceneEntities>();
     let placed = |problem: &Problem| {
         let Some((entity, path)) = &problem.subject else { return problem.clone() };
-        let name = names.0.iter().find(|(_, known)| *known == entity).map(|(name, _)| name);
+        let name = world.get::<Name>(*entity).map(Name::as_str);
         let place = name.and_then(|name| document.entity(name)).map(|entity| entity.place_of(path));
         let who = name.map_or(String::new(), |name| format!("`{name}`: "));
         Problem { message: format!("{who}{}", problem.message), place, ..problem.clone() }
     };
-    world.resource::<Problems>().0.iter().map(placed).collect()
+    let whole = world.resource::<Problems>().0.iter().map(placed);
+    let mut own: Vec<Problem> =
+        entity_problems(world).iter().flat_map(|all| all.iter()).map(placed).collect();
+    // Entities have no order of their own; a text has.
+    own.sort_by_key(|problem| {
+        problem.place.as_ref().map(|place| (place.file.path().to_owned(), place.bytes.start))
+    });
+    whole.chain(own).collect()
+}
+
+/// What is wrong with each entity that has something wrong with it.
+fn entity_problems(world: &World) -> Vec<&EntityProblems> {
+    let query = world.try_query::<&EntityProblems>();
+    query.map(|mut query| query.iter(world).collect()).unwrap_or_default()
+}
+
+fn has_errors(world: &World) -> bool {
+    let is_error = |problem: &Problem| problem.severity == Severity::Error;
+    world.resource::<Problems>().has_errors()
+        || entity_problems(world).iter().any(|all| all.iter().any(is_error))
 }
 
 /// Every problem of a document and of the files that its sound components name, for a program that ends with them: what could be read
@@ -96,8 +114,26 @@ pub fn all_problems(app: &mut App, document: &SceneDocument) -> Vec<Problem> {
 ///
 /// If the scene has errors, or the GPU fails. Needs a [`Gpu`] resource.
 pub fn render(app: &mut App) -> Result<Image, RenderError> {
+    update(app)?;
+    if has_errors(app.world()) {
+        return Err(RenderError::Scene);
+    }
+    Ok(finish(app.world_mut())?)
+}
+
+/// The same, showing what there is to be shown of a scene with errors, as while its files are being edited.
+///
+/// # Errors
+///
+/// If the GPU fails. Needs a [`Gpu`] resource.
+pub fn render_what_is_there(app: &mut App) -> Result<Image, GpuError> {
+    update(app)?;
+    finish(app.world_mut())
+}
+
+fn update(app: &mut App) -> Result<(), GpuError> {
     if !app.world().contains_resource::<Gpu>() {
-        return Err(GpuError::Missing.into());
+        return Err(GpuError::Missing);
     }
     if app.world().resource::<Report>().measure && !app.world().contains_resource::<PassTimer>() {
         let timer = PassTimer::new(app.world().resource::<Gpu>());
@@ -107,12 +143,10 @@ pub fn render(app: &mut App) -> Result<Image, RenderError> {
     app.update();
     let world = app.world_mut();
     world.resource_mut::<Report>().spent("update", started);
-    if let Some(error) = world.resource_mut::<Failure>().0.take() {
-        return Err(error.into());
-    }
-    if world.resource::<Problems>().has_errors() {
-        return Err(RenderError::Scene);
-    }
+    world.resource_mut::<Failure>().0.take().map_or(Ok(()), Err)
+}
+
+fn finish(world: &mut World) -> Result<Image, GpuError> {
     let started = Instant::now();
     world.resource::<Gpu>().wait("drawing")?;
     world.resource_mut::<Report>().spent("draw", started);

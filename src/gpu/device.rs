@@ -1,5 +1,7 @@
 use super::GpuError;
+use super::live::ShaderChanges;
 use bevy_ecs::prelude::Resource;
+use std::sync::Arc;
 
 /// The adapter, its device and what it can do.
 #[derive(Resource, Debug)]
@@ -10,6 +12,7 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// Who the adapter is.
     pub info: wgpu::AdapterInfo,
+    pub(super) shader_changes: Arc<ShaderChanges>,
 }
 
 /// How to choose the device.
@@ -63,7 +66,7 @@ impl Gpu {
         let opened = adapter.request_device(&descriptor).await;
         let (device, queue) = opened
             .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
-        Ok(Self { device, queue, info })
+        Ok(Self { device, queue, info, shader_changes: Arc::default() })
     }
 
     /// Whether the device has a feature.

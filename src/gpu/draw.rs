@@ -1,12 +1,13 @@
 //! A draw: one shader, one bind group, one colour target.
 
-use super::{Gpu, GpuError, shader};
+use super::live::Live;
+use super::{Gpu, GpuError};
 
 /// A render pipeline and the layout of its bind group 0.
 #[derive(Debug)]
 pub struct Draw {
     label: &'static str,
-    pipeline: wgpu::RenderPipeline,
+    pipeline: Live<wgpu::RenderPipeline>,
     layout: wgpu::BindGroupLayout,
 }
 
@@ -31,61 +32,26 @@ pub struct DrawDescriptor<'a> {
 impl Draw {
     /// Compiles the shader and makes the pipeline.
     pub fn new(gpu: &Gpu, descriptor: &DrawDescriptor) -> Result<Self, GpuError> {
-        let module = shader::module(gpu, descriptor.name, descriptor.generated)?;
-        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
-        let entries: Vec<_> = descriptor
-            .bindings
-            .iter()
-            .enumerate()
-            .map(|(index, ty)| layout_entry(index, *ty, visibility))
-            .collect();
-        let label = Some(descriptor.name);
-        let layout = gpu
-            .device
-            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
-        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label,
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let buffers: Vec<_> =
-            descriptor.vertex_buffers.iter().copied().map(vertex_buffer).map(Some).collect();
-        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label,
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some(descriptor.entry_points.0),
-                compilation_options: Default::default(),
-                buffers: &buffers,
-            },
-            primitive: Default::default(),
-            depth_stencil: descriptor.depth.then(|| wgpu::DepthStencilState {
-                format: wgpu::TextureFormat::Depth32Float,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::Greater),
-                stencil: Default::default(),
-                bias: Default::default(),
-            }),
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some(descriptor.entry_points.1),
-                compilation_options: Default::default(),
-                targets: &[Some(descriptor.format.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        match pollster::block_on(scope.pop()) {
-            Some(error) => Err(GpuError::Shader(format!("{}.wgsl", descriptor.name), error.to_string())),
-            None => Ok(Self { label: descriptor.name, pipeline, layout }),
-        }
+        let entry = |(index, ty): (usize, &wgpu::BindingType)| layout_entry(index, *ty, visibility);
+        let entries: Vec<_> = descriptor.bindings.iter().enumerate().map(entry).collect();
+        let layout = layout(gpu, descriptor.name, &entries)?;
+        let recipe = Recipe {
+            name: descriptor.name,
+            layout: layout.clone(),
+            entry_points: (descriptor.entry_points.0.to_owned(), descriptor.entry_points.1.to_owned()),
+            vertex_buffers: descriptor.vertex_buffers.iter().map(|buffer| buffer.to_vec()).collect(),
+            format: descriptor.format,
+            depth: descriptor.depth,
+        };
+        let make = move |gpu: &Gpu, module: &wgpu::ShaderModule| recipe.make(gpu, module);
+        let pipeline = Live::new(gpu, descriptor.name, descriptor.generated, Box::new(make))?;
+        Ok(Self { label: descriptor.name, pipeline, layout })
     }
 
-    /// Binds resources in the order of the bindings.
+    /// Binds resources in the order of the bindings. What is drawn with them afterwards is drawn by the shader as it is now.
     pub fn bind(&self, gpu: &Gpu, resources: &[wgpu::BindingResource]) -> wgpu::BindGroup {
+        self.pipeline.current(gpu);
         bind(gpu, self.label, &self.layout, resources)
     }
 
@@ -120,9 +86,79 @@ impl Draw {
 
     /// Makes the pipeline and the bind group current. `offsets` choose the structs of [`binding::UNIFORM_EACH`].
     pub fn begin(&self, pass: &mut wgpu::RenderPass, bind_group: &wgpu::BindGroup, offsets: &[u32]) {
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(&self.pipeline.last());
         pass.set_bind_group(0, bind_group, offsets);
     }
+}
+
+/// What a pipeline is made of besides its shader.
+struct Recipe {
+    name: &'static str,
+    layout: wgpu::BindGroupLayout,
+    entry_points: (String, String),
+    vertex_buffers: Vec<Vec<wgpu::VertexAttribute>>,
+    format: wgpu::TextureFormat,
+    depth: bool,
+}
+
+impl Recipe {
+    fn make(&self, gpu: &Gpu, module: &wgpu::ShaderModule) -> Result<wgpu::RenderPipeline, GpuError> {
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let buffers: Vec<_> = self.vertex_buffers.iter().map(|buffer| Some(vertex_buffer(buffer))).collect();
+        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(self.name),
+            layout: Some(&pipeline_layout(gpu, self.name, &self.layout)),
+            vertex: wgpu::VertexState {
+                module,
+                entry_point: Some(&self.entry_points.0),
+                compilation_options: Default::default(),
+                buffers: &buffers,
+            },
+            primitive: Default::default(),
+            depth_stencil: self.depth.then(|| wgpu::DepthStencilState {
+                format: wgpu::TextureFormat::Depth32Float,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(wgpu::CompareFunction::Greater),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module,
+                entry_point: Some(&self.entry_points.1),
+                compilation_options: Default::default(),
+                targets: &[Some(self.format.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        match pollster::block_on(scope.pop()) {
+            Some(error) => Err(GpuError::Shader(format!("{}.wgsl", self.name), error.to_string())),
+            None => Ok(pipeline),
+        }
+    }
+}
+
+pub(super) fn layout(
+    gpu: &Gpu,
+    name: &str,
+    entries: &[wgpu::BindGroupLayoutEntry],
+) -> Result<wgpu::BindGroupLayout, GpuError> {
+    let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some(name), entries };
+    let layout = gpu.device.create_bind_group_layout(&descriptor);
+    match pollster::block_on(scope.pop()) {
+        Some(error) => Err(GpuError::Shader(format!("{name}.wgsl"), error.to_string())),
+        None => Ok(layout),
+    }
+}
+
+pub(super) fn pipeline_layout(gpu: &Gpu, name: &str, layout: &wgpu::BindGroupLayout) -> wgpu::PipelineLayout {
+    gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(name),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    })
 }
 
 fn vertex_buffer(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {

@@ -1,12 +1,13 @@
 //! A kernel: one compute shader, one bind group.
 
-use super::{Gpu, GpuError, shader};
+use super::live::Live;
+use super::{Gpu, GpuError};
 
 /// A compute pipeline and the layout of its bind group 0.
 #[derive(Debug)]
 pub struct Kernel {
     label: &'static str,
-    pipeline: wgpu::ComputePipeline,
+    pipeline: Live<wgpu::ComputePipeline>,
     layout: wgpu::BindGroupLayout,
 }
 
@@ -25,33 +26,31 @@ pub struct KernelDescriptor<'a> {
 impl Kernel {
     /// Compiles the shader and makes the pipeline.
     pub fn new(gpu: &Gpu, descriptor: &KernelDescriptor) -> Result<Self, GpuError> {
-        let module = shader::module(gpu, descriptor.name, descriptor.generated)?;
-        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let visibility = wgpu::ShaderStages::COMPUTE;
         let entry =
             |(index, ty): (usize, &wgpu::BindingType)| super::draw::layout_entry(index, *ty, visibility);
         let entries: Vec<_> = descriptor.bindings.iter().enumerate().map(entry).collect();
-        let label = Some(descriptor.name);
-        let layout = gpu
-            .device
-            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
-        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label,
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label,
-            layout: Some(&pipeline_layout),
-            module: &module,
-            entry_point: Some(descriptor.entry_point),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-        match pollster::block_on(scope.pop()) {
-            Some(error) => Err(GpuError::Shader(format!("{}.wgsl", descriptor.name), error.to_string())),
-            None => Ok(Self { label: descriptor.name, pipeline, layout }),
-        }
+        let layout = super::draw::layout(gpu, descriptor.name, &entries)?;
+        let (name, entry_point) = (descriptor.name, descriptor.entry_point.to_owned());
+        let own_layout = layout.clone();
+        let make = move |gpu: &Gpu, module: &wgpu::ShaderModule| {
+            let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+            let pipeline_layout = super::draw::pipeline_layout(gpu, name, &own_layout);
+            let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(name),
+                layout: Some(&pipeline_layout),
+                module,
+                entry_point: Some(&entry_point),
+                compilation_options: Default::default(),
+                cache: None,
+            });
+            match pollster::block_on(scope.pop()) {
+                Some(error) => Err(GpuError::Shader(format!("{name}.wgsl"), error.to_string())),
+                None => Ok(pipeline),
+            }
+        };
+        let pipeline = Live::new(gpu, name, descriptor.generated, Box::new(make))?;
+        Ok(Self { label: name, pipeline, layout })
     }
 
     /// Invocations of a workgroup, in a row: what every kernel declares.
@@ -71,7 +70,7 @@ impl Kernel {
             label: Some(self.label),
             timestamp_writes: timing,
         });
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(&self.pipeline.current(gpu));
         pass.set_bind_group(0, &bind_group, &[]);
         match invocations {
             Invocations::Count(count) => {
@@ -96,7 +95,7 @@ impl Kernel {
         let bind_group = super::draw::bind(gpu, self.label, &self.layout, resources);
         let descriptor = wgpu::ComputePassDescriptor { label: Some(self.label), timestamp_writes: timing };
         let mut pass = encoder.begin_compute_pass(&descriptor);
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(&self.pipeline.current(gpu));
         let (across, down) = Self::workgroups(invocations);
         for offset in offsets {
             pass.set_bind_group(0, &bind_group, &[offset]);

@@ -7,6 +7,7 @@ mod error;
 mod formats;
 mod grid;
 mod kernel;
+mod live;
 mod readback;
 pub mod shader;
 mod target;

@@ -4,6 +4,8 @@
 
 use super::{Gpu, GpuError};
 use std::borrow::Cow;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
 macro_rules! sources {
     ($($name:literal => $path:literal),* $(,)?) => {
@@ -51,39 +53,118 @@ sources! {
     "tonemap" => "tonemap.wgsl",
 }
 
-/// The text of a shader with all its imports in front of what needs them. `generated` are modules made for this use.
-pub fn expand(name: &str, generated: &[(&str, String)]) -> Result<String, GpuError> {
-    let mut text = String::new();
-    append(name, generated, &mut Vec::new(), &mut text)?;
-    Ok(text)
+/// The folder whose files are used instead of the shaders built in, where there is one.
+pub fn folder() -> Option<PathBuf> {
+    std::env::var_os("TYNDALL_SHADERS").map(PathBuf::from)
 }
 
-fn append(
-    name: &str,
+/// The shaders that these files of [`folder`] are, and those that import them, be it through modules made for a use, which `generated`
+/// gives examples of.
+pub(crate) fn affected<'a>(
+    files: impl IntoIterator<Item = &'a Path>,
     generated: &[(&str, String)],
-    done: &mut Vec<String>,
-    text: &mut String,
-) -> Result<(), GpuError> {
-    done.push(name.into());
-    for (index, line) in source(name, generated).unwrap_or_default().lines().enumerate() {
-        let Some(import) = line.strip_prefix("#import ").map(str::trim) else {
-            text.push_str(line);
-            text.push('\n');
-            continue;
-        };
-        if done.iter().any(|known| known == import) {
-            continue;
-        }
-        if source(import, generated).is_none() {
-            return Err(GpuError::Import {
-                file: format!("{name}.wgsl"),
-                line: index + 1,
-                import: import.into(),
-            });
-        }
-        append(import, generated, done, text)?;
+) -> BTreeSet<String> {
+    let Some(folder) = folder() else { return BTreeSet::new() };
+    let files: BTreeSet<&Path> = files.into_iter().collect();
+    let changed = SOURCES.iter().filter(|(_, path, _)| files.contains(folder.join(path).as_path()));
+    let mut affected: BTreeSet<String> = changed.map(|(name, ..)| (*name).to_owned()).collect();
+    if affected.is_empty() {
+        return affected;
     }
-    Ok(())
+    let names = SOURCES.iter().map(|(name, ..)| *name).chain(generated.iter().map(|(name, _)| *name));
+    let imports: Vec<(&str, Vec<String>)> = names
+        .map(|name| {
+            let text = source(name, generated).unwrap_or_default();
+            (name, text.lines().filter_map(import).map(str::to_owned).collect())
+        })
+        .collect();
+    let is_made = |name: &str| generated.iter().any(|(made, _)| *made == name);
+    let is_shared =
+        |name: &str| SOURCES.iter().any(|(known, path, _)| *known == name && path.starts_with("shared/"));
+    let is_imported = |name: &str| imports.iter().flat_map(|(_, own)| own).any(|import| import == name);
+    loop {
+        // What nothing here imports may be imported by another version of any module that is made.
+        let through_any = affected.iter().any(|name| is_shared(name) && !is_imported(name));
+        let concerns = |module: &String| affected.contains(module) || through_any && is_made(module);
+        let found: Vec<String> = imports
+            .iter()
+            .filter(|(name, own)| !affected.contains(*name) && own.iter().any(concerns))
+            .map(|(name, _)| (*name).to_owned())
+            .collect();
+        if found.is_empty() {
+            affected.retain(|name| !is_made(name));
+            return affected;
+        }
+        affected.extend(found);
+    }
+}
+
+/// The text of a shader with all its imports in front of what needs them. `generated` are modules made for this use.
+pub fn expand(name: &str, generated: &[(&str, String)]) -> Result<String, GpuError> {
+    Expanded::new(name, generated).map(|expanded| expanded.text)
+}
+
+/// A shader with its imports, and where each line came from.
+pub(super) struct Expanded {
+    text: String,
+    /// By line: the module that it is in, and which of its lines it is.
+    origin: Vec<(String, usize)>,
+}
+
+impl Expanded {
+    pub fn new(name: &str, generated: &[(&str, String)]) -> Result<Self, GpuError> {
+        let mut expanded = Self { text: String::new(), origin: Vec::new() };
+        expanded.append(name, generated, &mut Vec::new())?;
+        Ok(expanded)
+    }
+
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Where a line, counted from 1, is written: `surface.wgsl:12`.
+    fn place(&self, line: usize) -> Option<String> {
+        let (name, line) = self.origin.get(line.checked_sub(1)?)?;
+        let path = SOURCES.iter().find(|(known, ..)| known == name).map(|(_, path, _)| *path);
+        Some(match path {
+            Some(path) => format!("{path}:{line}"),
+            None => format!("the module `{name}` made for it, line {line}"),
+        })
+    }
+
+    fn append(
+        &mut self,
+        name: &str,
+        generated: &[(&str, String)],
+        done: &mut Vec<String>,
+    ) -> Result<(), GpuError> {
+        done.push(name.into());
+        for (index, line) in source(name, generated).unwrap_or_default().lines().enumerate() {
+            let Some(import) = import(line) else {
+                self.text.push_str(line);
+                self.text.push('\n');
+                self.origin.push((name.into(), index + 1));
+                continue;
+            };
+            if done.iter().any(|known| known == import) {
+                continue;
+            }
+            if source(import, generated).is_none() {
+                return Err(GpuError::Import {
+                    file: format!("{name}.wgsl"),
+                    line: index + 1,
+                    import: import.into(),
+                });
+            }
+            self.append(import, generated, done)?;
+        }
+        Ok(())
+    }
+}
+
+/// What a line imports, if it does.
+fn import(line: &str) -> Option<&str> {
+    line.strip_prefix("#import ").map(str::trim)
 }
 
 fn source<'a>(name: &str, generated: &'a [(&str, String)]) -> Option<Cow<'a, str>> {
@@ -91,20 +172,22 @@ fn source<'a>(name: &str, generated: &'a [(&str, String)]) -> Option<Cow<'a, str
         return Some(Cow::Borrowed(text));
     }
     let (_, path, built_in) = SOURCES.iter().find(|(known, ..)| *known == name)?;
-    let folder = std::env::var_os("TYNDALL_SHADERS");
-    let own =
-        folder.and_then(|folder| std::fs::read_to_string(std::path::Path::new(&folder).join(path)).ok());
+    let own = folder().and_then(|folder| std::fs::read_to_string(folder.join(path)).ok());
     Some(own.map_or(Cow::Borrowed(*built_in), Cow::Owned))
 }
 
-/// Compiles a shader. Errors are those of naga, with the text around them.
-pub fn module(gpu: &Gpu, name: &str, generated: &[(&str, String)]) -> Result<wgpu::ShaderModule, GpuError> {
-    let text = expand(name, generated)?;
+/// Compiles a shader. Errors are those of naga, with the text around them and the place in its file.
+pub(super) fn compile(gpu: &Gpu, name: &str, expanded: &Expanded) -> Result<wgpu::ShaderModule, GpuError> {
     let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let source = wgpu::ShaderSource::Wgsl(Cow::Owned(text));
+    let source = wgpu::ShaderSource::Wgsl(Cow::Borrowed(expanded.text()));
     let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(name), source });
-    match pollster::block_on(scope.pop()) {
-        Some(error) => Err(GpuError::Shader(format!("{name}.wgsl"), error.to_string())),
-        None => Ok(module),
-    }
+    let Some(error) = pollster::block_on(scope.pop()) else { return Ok(module) };
+    let messages = pollster::block_on(module.get_compilation_info()).messages;
+    let location = messages.iter().find_map(|message| message.location);
+    let place = location.and_then(|location| {
+        let place = expanded.place(location.line_number as usize)?;
+        Some(format!("{place}:{}", location.line_position))
+    });
+    let file = place.map_or(format!("{name}.wgsl"), |place| format!("{name}.wgsl ({place})"));
+    Err(GpuError::Shader(file, error.to_string()))
 }

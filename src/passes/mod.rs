@@ -15,6 +15,7 @@ pub mod lighting;
 pub mod medium;
 pub mod preclassify;
 pub mod preintegrate;
+pub(crate) mod products;
 pub mod raycast;
 pub mod scattered_light;
 pub mod scattered_radiosity;

@@ -3,7 +3,7 @@
 use crate::components::Subsurface;
 use crate::gpu::{Gpu, VolumeFormat};
 use crate::loading::{LoadedMesh, LoadedVolume};
-use crate::scene::{Problem, Problems};
+use crate::scene::{EntityProblems, Problem};
 use crate::sources::{MeshData, Samples};
 use crate::{Stage, report::Report};
 use bevy_app::{App, Plugin, Update};
@@ -89,7 +89,7 @@ fn upload_meshes(
     gpu: Res<Gpu>,
     mut meshes: Query<(Entity, &mut LoadedMesh, Has<Subsurface>), Changed<LoadedMesh>>,
     all: Query<&MeshBuffers>,
-    (mut problems, mut report): (ResMut<Problems>, ResMut<Report>),
+    mut report: ResMut<Report>,
 ) {
     let limit = gpu.device.limits().max_buffer_size;
     let mut added = 0;
@@ -99,8 +99,10 @@ fn upload_meshes(
         let Some(data) = (if scatters { kept.clone() } else { kept.take() }) else { continue };
         let (vertices, triangles) = (data.positions.len() as u64, data.triangles.len() as u64);
         let largest = (vertices * MeshBuffers::VERTEX).max(triangles * 12);
-        if largest > limit {
-            problems.0.push(mesh_too_large(&data, largest, limit).on(entity, "Mesh"));
+        let too_large = (largest > limit).then(|| mesh_too_large(&data, largest, limit).on(entity, "Mesh"));
+        let fits = too_large.is_none();
+        EntityProblems::set(&mut commands, entity, "upload_meshes", too_large.into_iter().collect());
+        if !fits {
             continue;
         }
         let buffers = MeshBuffers::new(&gpu, &data);
@@ -131,7 +133,7 @@ fn upload_volumes(
     gpu: Res<Gpu>,
     mut volumes: Query<(Entity, &mut LoadedVolume), Changed<LoadedVolume>>,
     all: Query<&VolumeTexture>,
-    (mut problems, mut report): (ResMut<Problems>, ResMut<Report>),
+    mut report: ResMut<Report>,
 ) {
     let limit = gpu.device.limits().max_texture_dimension_3d;
     let mut added = 0;
@@ -143,15 +145,10 @@ fn upload_volumes(
         let size = volume.data.size;
         let emptied = volume.data.samples.emptied();
         let samples = std::mem::replace(&mut volume.data.samples, emptied);
-        if size.iter().any(|side| *side > limit) {
-            let [x, y, z] = size;
-            let message =
-                format!("{x} x {y} x {z} voxels are more than this adapter takes: {limit} along each side");
-            problems.0.push(
-                Problem::error(message)
-                    .help("downsample the volume, or cut out the part that matters")
-                    .on(entity, "Volume"),
-            );
+        let too_large = volume_too_large(size, limit).map(|problem| problem.on(entity, "Volume"));
+        let fits = too_large.is_none();
+        EntityProblems::set(&mut commands, entity, "upload_volumes", too_large.into_iter().collect());
+        if !fits {
             continue;
         }
         let texture = texture(&gpu, size, &samples);
@@ -163,6 +160,14 @@ fn upload_volumes(
     if held > 0 {
         report.gpu_bytes.insert("volumes", held);
     }
+}
+
+fn volume_too_large([x, y, z]: [u32; 3], limit: u32) -> Option<Problem> {
+    if [x, y, z].into_iter().all(|side| side <= limit) {
+        return None;
+    }
+    let message = format!("{x} x {y} x {z} voxels are more than this adapter takes: {limit} along each side");
+    Some(Problem::error(message).help("downsample the volume, or cut out the part that matters"))
 }
 
 fn texture(gpu: &Gpu, size: [u32; 3], samples: &Samples) -> VolumeTexture {

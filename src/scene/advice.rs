@@ -19,7 +19,7 @@ pub(super) fn advice(document: &SceneDocument) -> Vec<Problem> {
 fn nothing_to_see(document: &SceneDocument) -> Option<Problem> {
     // A component of a plugin may well be something to see.
     let unseen = [TypeId::of::<DirectionalLight>(), TypeId::of::<ViewCamera>()];
-    let mut components = document.entities.iter().flat_map(|entity| &entity.components);
+    let mut components = document.entities.iter().flat_map(|entity| entity.components.iter());
     if components.any(|component| !unseen.contains(&component.type_id)) {
         return None;
     }

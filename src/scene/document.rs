@@ -2,16 +2,16 @@
 
 use super::advice::advice;
 use super::edit;
-use super::names::{nearest_file, suggestion};
-use super::parts::{Named, Part};
+use super::frame::Frame;
+use super::loader;
 use super::problem::{Place, Problem, Severity, SourceFile};
-use super::reader::{Allowed, Reader};
 use super::references::references;
-use crate::components::{AssetPath, SceneSettings};
-use bevy_ecs::reflect::ReflectComponent;
-use bevy_reflect::{Reflect, TypeInfo, TypeRegistration, TypeRegistry, structs::Struct};
+use crate::components::SceneSettings;
+use crate::sources::trail::{self, Trail};
+use bevy_reflect::{Reflect, TypeRegistry};
 use std::any::TypeId;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -26,35 +26,75 @@ pub struct SceneComponent {
 }
 
 /// An entity as read.
+#[derive(Clone)]
 pub struct SceneEntity {
     /// Its name, which is its identity.
     pub name: String,
-    /// Its components, in the order in which they are written.
-    pub components: Vec<SceneComponent>,
+    /// Its components, in the order in which they are written. Shared with the document before, where the text is the same.
+    pub components: Arc<[SceneComponent]>,
     /// Where its name stands.
     pub place: Place,
+    /// Where its components stand, in the same file.
+    pub(super) bytes: Range<usize>,
+    pub(super) details: Arc<Details>,
+}
+
+/// What is known about the text of an entity, wherever in the file it stands.
+#[derive(Default)]
+pub(super) struct Details {
     /// Where each value stands, by its path: `Mesh`, `Mesh.radius`, `TransferFunction.points[2]`.
-    places: HashMap<String, Place>,
+    pub(super) places: HashMap<String, Position>,
+    /// The files of components that are kept in files of their own.
+    pub(super) files: Vec<Arc<SourceFile>>,
+    /// Whether reading it gave no problem.
+    pub(super) is_sound: bool,
+}
+
+pub(super) enum Position {
+    /// In the text of the entity, from where that begins.
+    Within(Range<usize>),
+    /// In another file.
+    Elsewhere(Place),
 }
 
 impl SceneEntity {
     /// Whether the value at `path` stands in a file, as opposed to being a default.
     pub fn is_written(&self, path: &str) -> bool {
-        self.places.contains_key(path)
+        self.details.places.contains_key(path)
     }
 
     /// Where the value at `path` stands; where it is not written, the nearest thing around it that is.
     pub fn place_of(&self, path: &str) -> Place {
         let mut path = path;
         loop {
-            if let Some(place) = self.places.get(path) {
-                return place.clone();
+            match self.details.places.get(path) {
+                Some(Position::Elsewhere(place)) => return place.clone(),
+                Some(Position::Within(bytes)) => {
+                    let bytes = self.bytes.start + bytes.start..self.bytes.start + bytes.end;
+                    return Place { file: self.place.file.clone(), bytes };
+                }
+                None => {}
             }
             match path.rfind(['.', '[']) {
                 Some(end) => path = &path[..end],
                 None => return self.place.clone(),
             }
         }
+    }
+
+    /// The value of a component.
+    pub fn component(&self, type_id: TypeId) -> Option<&dyn Reflect> {
+        let component = self.components.iter().find(|component| component.type_id == type_id)?;
+        Some(component.value.as_ref())
+    }
+
+    /// Whether it is the one of an earlier document, not only one that is equal.
+    pub(super) fn is_shared_with(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.components, &other.components)
+    }
+
+    pub(super) fn text(&self) -> &str {
+        &self.place.file.text()[self.bytes.clone()]
     }
 }
 
@@ -89,16 +129,47 @@ pub struct SceneDocument {
     /// What is wrong. With errors among them the document is not fit to be shown.
     pub problems: Vec<Problem>,
     /// Where the head's fields stand.
-    head: HashMap<String, Place>,
+    pub(super) head: HashMap<String, Place>,
     /// Where each entity is in the list.
-    index: HashMap<String, usize>,
+    pub(super) index: HashMap<String, usize>,
+    /// The files that could be read.
+    pub(super) sources: HashMap<PathBuf, Arc<SourceFile>>,
+    /// Where the parts of the scene and its includes are, of those that are whole.
+    pub(super) frames: HashMap<PathBuf, Frame>,
+    /// Every file that was looked for, and how it was then.
+    trail: Trail,
 }
 
 impl SceneDocument {
     /// Reads the scene at `path` and all that it includes, with `overrides` in force.
     pub fn load(path: &Path, registry: &TypeRegistry, overrides: &[Override]) -> Self {
+        Self::load_after(path, registry, overrides, None)
+    }
+
+    /// The same, without reading again the entities whose text is as it was in an earlier document of the same scene.
+    pub fn load_after(
+        path: &Path,
+        registry: &TypeRegistry,
+        overrides: &[Override],
+        last: Option<&Self>,
+    ) -> Self {
+        let (mut document, trail) = trail::follow(|| Self::overridden(path, registry, overrides, last));
+        document.trail = trail;
+        document.looked_over()
+    }
+
+    /// With the problems that show only in all of it.
+    fn looked_over(mut self) -> Self {
+        self.problems.extend(references(&self));
+        if !self.has_errors() {
+            self.problems.extend(advice(&self));
+        }
+        self
+    }
+
+    fn overridden(path: &Path, registry: &TypeRegistry, overrides: &[Override], last: Option<&Self>) -> Self {
         let mut texts = HashMap::new();
-        let mut document = Self::load_with(path, registry, &texts);
+        let mut document = loader::load(path, registry, &texts, last);
         for change in overrides {
             if document.has_errors() {
                 break;
@@ -106,16 +177,22 @@ impl SceneDocument {
             match edit::apply(&document, change, registry) {
                 Ok((file, text)) => {
                     texts.insert(file, text);
-                    document = Self::load_with(path, registry, &texts);
+                    document = loader::load(path, registry, &texts, Some(&document));
                 }
                 Err(problem) => document.problems.push(*problem),
             }
         }
-        document.problems.extend(references(&document));
-        if !document.has_errors() {
-            document.problems.extend(advice(&document));
-        }
         document
+    }
+
+    /// Every file that was looked for while it was read, found or not, and how it was then.
+    pub fn trail(&self) -> &Trail {
+        &self.trail
+    }
+
+    /// The text of a file as it was used, if it could be read.
+    pub(super) fn source(&self, path: &Path) -> Option<&SourceFile> {
+        self.sources.get(path).map(Arc::as_ref)
     }
 
     /// Whether anything keeps the scene from being shown.
@@ -132,322 +209,13 @@ impl SceneDocument {
     pub(super) fn head_place(&self, field: &str) -> Option<&Place> {
         self.head.get(field)
     }
-
-    fn load_with(path: &Path, registry: &TypeRegistry, texts: &HashMap<PathBuf, String>) -> Self {
-        let mut loader = Loader {
-            registry,
-            texts,
-            document: Self::default(),
-            settings: SceneSettings::default(),
-            read: HashMap::new(),
-            included: HashSet::new(),
-        };
-        loader.included.insert(identity(path));
-        loader.file(path, None, true);
-        let mut document = loader.document;
-        document.settings = loader.settings;
-        document
-    }
-}
-
-struct Loader<'a> {
-    registry: &'a TypeRegistry,
-    /// Texts that stand in for what is on disk.
-    texts: &'a HashMap<PathBuf, String>,
-    document: SceneDocument,
-    settings: SceneSettings,
-    /// Every file tried so far, and its text if it has one: what several entities share is read, and reported, once.
-    read: HashMap<PathBuf, Option<Arc<SourceFile>>>,
-    /// The scene and what it includes, by [`identity`].
-    included: HashSet<PathBuf>,
-}
-
-impl<'a> Loader<'a> {
-    /// Reads a scene file: the scene itself (`main`) or one that it includes.
-    fn file(&mut self, path: &Path, named_at: Option<&Place>, main: bool) {
-        let Some(file) = self.text(path, named_at) else { return };
-        let mut reader = Reader::new(self.registry, file.clone());
-        let whole = Part::whole(file.text()).trimmed();
-        if whole.text.is_empty() {
-            let problem = Problem::error("the file is empty").label("nothing but white space and comments");
-            reader.report(&whole, problem.help("a scene is written `( entities: { … } )`"));
-        } else {
-            self.head(&mut reader, &Part::whole(file.text()), &whole, main);
-        }
-        self.document.problems.append(&mut reader.problems);
-    }
-
-    fn head(&mut self, reader: &mut Reader, file: &Part, whole: &Part, main: bool) {
-        // Parsed with what stands around it, so that nothing stands there unnoticed.
-        let fields = match file.fields() {
-            Ok(fields) => fields,
-            Err(misfit) => return reader.report_shape(whole, misfit, "a scene `( entities: { … } )`"),
-        };
-        if main {
-            self.document.head.insert(String::new(), reader.place(whole));
-        }
-        let mut seen: Vec<(&str, Place)> = Vec::new();
-        for Named { name, value } in &fields {
-            if let Some((_, first)) = seen.iter().find(|(seen, _)| *seen == name.text) {
-                let other = Some((first.clone(), "first written here".into()));
-                let problem = Problem {
-                    other,
-                    ..Problem::error(format!("`{}` is written twice", name.text)).label("again here")
-                };
-                reader.report(name, problem);
-                continue;
-            }
-            seen.push((name.text, reader.place(name)));
-            self.head_field(reader, name, value, main);
-        }
-    }
-
-    fn head_field(&mut self, reader: &mut Reader, name: &Part, value: &Part, main: bool) {
-        match name.text {
-            "entities" => self.entities(reader, value),
-            "include" => self.includes(reader, value),
-            field if main && SETTINGS.contains(&field) => self.setting(reader, field, value),
-            field if SETTINGS.contains(&field) => {
-                let problem = Problem::error(format!(
-                    "`{field}` belongs in the head of the scene, not in a file that it includes"
-                ));
-                reader.report(name, problem);
-            }
-            other => {
-                let mut known = SETTINGS.to_vec();
-                known.extend(["include", "entities"]);
-                let problem =
-                    Problem::error(format!("a scene has no field `{other}`")).label("unknown field");
-                reader.report(name, problem.help(suggestion(other, &known)));
-            }
-        }
-    }
-
-    fn setting(&mut self, reader: &mut Reader, name: &str, part: &Part) {
-        self.document.head.insert(name.into(), reader.place(part));
-        let registration = self.registry.get(TypeId::of::<SceneSettings>());
-        let Some(TypeInfo::Struct(info)) = registration.map(TypeRegistration::type_info) else { return };
-        let Some(field) = info.field(name) else { return };
-        let Some(registration) = self.registry.get(field.type_id()) else { return };
-        let allowed = Allowed::by(field.custom_attributes());
-        if let Some(value) = reader.value_at(name, part, registration, allowed)
-            && let Some(target) = self.settings.field_mut(name)
-        {
-            target.apply(value.as_ref());
-        }
-    }
-
-    fn includes(&mut self, reader: &mut Reader, part: &Part) {
-        let Some(registration) = self.registry.get(TypeId::of::<AssetPath>()) else { return };
-        let elements = match part.elements() {
-            Ok(elements) => elements,
-            Err(misfit) => return reader.report_shape(part, misfit, "a list of paths `[\"…\"]`"),
-        };
-        for element in elements {
-            let Some(value) = reader.value_at("include", &element, registration, Allowed::default()) else {
-                continue;
-            };
-            let Some(path) = value.try_downcast_ref::<AssetPath>().map(|path| path.path().to_owned()) else {
-                continue;
-            };
-            if self.included.insert(identity(&path)) {
-                self.file(&path, Some(&reader.place(&element)), false);
-            }
-        }
-    }
-
-    fn entities(&mut self, reader: &mut Reader, part: &Part) {
-        let entries = match part.entries() {
-            Ok(entries) => entries,
-            Err(misfit) => {
-                return reader.report_shape(part, misfit, "entities by name `{ \"name\": ( … ), … }`");
-            }
-        };
-        self.document.head.entry("entities".into()).or_insert_with(|| reader.place(part));
-        for Named { name, value } in entries {
-            let place = reader.place(&name);
-            let name = match name.read(std::marker::PhantomData::<String>) {
-                Ok(text) => text,
-                Err(_) => {
-                    let message = format!("expected a name in quotes, found `{}`", name.text);
-                    let problem = Problem::error(message).help(format!("write `\"{}\"`", name.text));
-                    reader.report(&name, problem);
-                    continue;
-                }
-            };
-            if let Some(first) = self.document.entity(&name) {
-                let elsewhere = first.place.to_string();
-                let other = Some((first.place.clone(), "first here".into()));
-                let problem =
-                    Problem::error(format!("two entities are called `{name}`")).label("again here").at(place);
-                reader.problems.push(Problem {
-                    other,
-                    ..problem.help(format!("the first stands at {elsewhere}; a name is an identity"))
-                });
-                continue;
-            }
-            let entity = self.entity(reader, name, place, &value);
-            self.document.index.insert(entity.name.clone(), self.document.entities.len());
-            self.document.entities.push(entity);
-        }
-    }
-
-    fn entity(&mut self, reader: &mut Reader, name: String, place: Place, part: &Part) -> SceneEntity {
-        let mut entity = SceneEntity { name, components: Vec::new(), place, places: HashMap::new() };
-        let fields = match part.fields() {
-            Ok(fields) => fields,
-            Err(misfit) => {
-                reader.report_shape(part, misfit, "components `( Name: value, … )`");
-                return entity;
-            }
-        };
-        entity.places.insert(String::new(), reader.place(part));
-        let mut names: HashMap<&str, Place> = HashMap::new();
-        for Named { name, value } in fields {
-            let Some(registration) = self.component_type(reader, &name) else { continue };
-            if entity.components.iter().any(|component| component.type_id == registration.type_id()) {
-                let other = names.get(name.text).map(|first| (first.clone(), "first written here".into()));
-                let message = format!("`{}` is written twice on `{}`", name.text, entity.name);
-                let problem = Problem { other, ..Problem::error(message).label("again here") };
-                reader.report(&name, problem);
-                continue;
-            }
-            names.insert(name.text, reader.place(&name));
-            let value = self.component(reader, name.text, &value, registration);
-            entity.places.extend(reader.places.drain(..));
-            if let Some(value) = value {
-                entity.components.push(SceneComponent {
-                    name: name.text.into(),
-                    type_id: registration.type_id(),
-                    value,
-                });
-            }
-        }
-        entity
-    }
-
-    /// Reads a component, from its own file where it is written as `File("…")` and the type has no such kind itself.
-    fn component(
-        &mut self,
-        reader: &mut Reader,
-        name: &str,
-        part: &Part,
-        registration: &TypeRegistration,
-    ) -> Option<Box<dyn Reflect>> {
-        let has_own_files =
-            matches!(registration.type_info(), TypeInfo::Enum(info) if info.contains_variant("File"));
-        let file_part = if has_own_files { None } else { edit::file_path(part) };
-        let Some(path_part) = file_part else { return reader.complete(part, registration, name) };
-        let path_type = self.registry.get(TypeId::of::<AssetPath>())?;
-        let path = reader.value_at(name, &path_part, path_type, Allowed::default())?;
-        let path = path.try_downcast_ref::<AssetPath>()?.path().to_owned();
-        let file = self.text(&path, Some(&reader.place(&path_part)))?;
-        let mut own = Reader::new(self.registry, file.clone());
-        let whole = Part::whole(file.text()).trimmed();
-        if whole.text.is_empty() {
-            let problem = Problem::error("the file is empty").label("nothing but white space and comments");
-            own.report(&whole, problem.help(format!("write what would stand behind `{name}:` in a scene")));
-        }
-        let value = if whole.text.is_empty() { None } else { own.complete(&whole, registration, name) };
-        reader.places.append(&mut own.places);
-        // What several entities share is reported once.
-        own.problems.retain(|problem| {
-            let known = self.document.problems.iter().chain(&reader.problems);
-            !known.into_iter().any(|other| other.is_same(problem))
-        });
-        reader.problems.append(&mut own.problems);
-        value
-    }
-
-    fn component_type(&self, reader: &mut Reader, name: &Part) -> Option<&'a TypeRegistration> {
-        let found = self.registry.get_with_short_type_path(name.text);
-        if let Some(registration) =
-            found.filter(|registration| registration.data::<ReflectComponent>().is_some())
-        {
-            return Some(registration);
-        }
-        let components =
-            self.registry.iter().filter(|registration| registration.data::<ReflectComponent>().is_some());
-        let mut known: Vec<_> =
-            components.map(|registration| registration.type_info().type_path_table().short_path()).collect();
-        known.sort_unstable();
-        let problem = if self.registry.is_ambiguous(name.text) {
-            Problem::error(format!("more than one plugin has a component `{}`", name.text)).label("ambiguous")
-        } else {
-            Problem::error(format!("there is no component `{}`", name.text))
-                .label("unknown component")
-                .help(suggestion(name.text, &known))
-        };
-        reader.report(name, problem);
-        None
-    }
-
-    fn text(&mut self, path: &Path, named_at: Option<&Place>) -> Option<Arc<SourceFile>> {
-        if let Some(file) = self.read.get(path) {
-            return file.clone();
-        }
-        self.document.files.push(path.to_owned());
-        let read = match self.texts.get(path) {
-            Some(text) => Ok(SourceFile::new(path, text.as_str())),
-            None => read_text(path),
-        };
-        let file = read
-            .map_err(|problem| {
-                let place = problem.place.clone().or(named_at.cloned());
-                self.document.problems.push(problem.at_maybe(place));
-            })
-            .ok();
-        self.read.insert(path.to_owned(), file.clone());
-        file
-    }
 }
 
 /// The same for every way to write the path of a file.
-fn identity(path: &Path) -> PathBuf {
+pub(super) fn identity(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
 /// The fields of [`SceneSettings`].
 pub(super) const SETTINGS: [&str; 5] =
     ["millimetres_per_unit", "background", "shading", "meshes_shade_volumes", "volumes_shade_meshes"];
-
-/// A scene is written by hand; what is larger is not one.
-const MAX_SCENE_BYTES: u64 = 64 << 20;
-
-fn read_text(path: &Path) -> Result<Arc<SourceFile>, Box<Problem>> {
-    use std::io::Read;
-    let unreadable = |error: std::io::Error| {
-        Box::new(match error.kind() {
-            std::io::ErrorKind::NotFound => {
-                let help = nearest_file(path)
-                    .map_or("check the path and the folder it is relative to".into(), |near| {
-                        format!("did you mean `{near}`?")
-                    });
-                Problem::error(format!("there is no file {}", path.display())).help(help)
-            }
-            _ => Problem::error(format!("cannot read {}: {error}", path.display())),
-        })
-    };
-    // Asked before opening: opening a pipe waits for its writer.
-    if std::fs::metadata(path).map_err(unreadable)?.is_dir() {
-        let problem = Problem::error(format!("{} is a folder", path.display()));
-        return Err(Box::new(problem.help("name a file in it")));
-    }
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(unreadable)?;
-    file.take(MAX_SCENE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > MAX_SCENE_BYTES {
-        return Err(Box::new(Problem::error(format!(
-            "{} is longer than {MAX_SCENE_BYTES} bytes: is it a scene?",
-            path.display()
-        ))));
-    }
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let start = error.utf8_error().valid_up_to();
-        let file = SourceFile::new(path, String::from_utf8_lossy(error.as_bytes()).as_ref());
-        let bytes = start..start + char::REPLACEMENT_CHARACTER.len_utf8();
-        let problem = Problem::error(format!("{} is not UTF-8 text", path.display()));
-        Box::new(problem.label("not UTF-8").help("save it as UTF-8").at(Place { file, bytes }))
-    })?;
-    Ok(SourceFile::new(path, text))
-}

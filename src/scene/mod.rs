@@ -10,16 +10,23 @@
 mod advice;
 mod document;
 mod edit;
+mod frame;
+mod loader;
 mod names;
 mod parts;
 mod problem;
 mod reader;
 mod reconcile;
 mod references;
+mod reload;
 mod tokens;
 mod wanted;
+mod watch;
 
 pub use document::{Override, SceneComponent, SceneDocument, SceneEntity};
 pub use names::nearest;
-pub use problem::{Place, Problem, Problems, Severity, SourceFile};
-pub use reconcile::{SceneEntities, reconcile};
+pub use problem::{EntityProblems, Place, Problem, Problems, Severity, SourceFile};
+pub use reconcile::{Changes, SceneEntities, reconcile, reconcile_after};
+pub(crate) use reload::{AssetWatch, watch_assets};
+pub use reload::{LiveScene, Reload};
+pub use watch::Wake;

@@ -60,6 +60,11 @@ impl<'a> Part<'a> {
         Self { whole: text, text }
     }
 
+    /// The part at these bytes of a file.
+    pub fn within(whole: &'a str, bytes: Range<usize>) -> Option<Self> {
+        Some(Self { whole, text: whole.get(bytes)? })
+    }
+
     /// Where the part is in its file.
     pub fn bytes(&self) -> Range<usize> {
         let start = self.text.as_ptr() as usize - self.whole.as_ptr() as usize;

@@ -1,7 +1,8 @@
 //! What is wrong with a scene, where, and how to mend it.
 
-use bevy_ecs::prelude::{Entity, Resource};
+use bevy_ecs::prelude::{Commands, Component, Entity, Resource, World};
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -187,7 +188,8 @@ impl Diagnostic for Problem {
     }
 }
 
-/// The problems of the scene that is loaded, collected by whatever finds one.
+/// The problems of the scene's text, and those that the last update found with the world as a whole. What is wrong with an entity's own
+/// files and sizes is in its [`EntityProblems`].
 #[derive(Resource, Debug, Default)]
 pub struct Problems(pub Vec<Problem>);
 
@@ -195,5 +197,40 @@ impl Problems {
     /// Whether any of them keeps the scene from being shown.
     pub fn has_errors(&self) -> bool {
         self.0.iter().any(|problem| problem.severity == Severity::Error)
+    }
+
+    /// Forgets what an update found: the next one finds it again where it is still so.
+    pub(crate) fn forget_update(&mut self) {
+        self.0.retain(|problem| problem.subject.is_none());
+    }
+}
+
+/// What is wrong with an entity, by who found it. It stays until who found it looks again, so that a file which cannot be read is told
+/// of for as long as that is so.
+#[derive(Component, Clone, Debug, Default)]
+pub struct EntityProblems(BTreeMap<&'static str, Vec<Problem>>);
+
+impl EntityProblems {
+    /// Replaces what `finder`, a system, found wrong with an entity earlier.
+    pub fn set(commands: &mut Commands, entity: Entity, finder: &'static str, problems: Vec<Problem>) {
+        commands.queue(move |world: &mut World| {
+            let Ok(mut entity) = world.get_entity_mut(entity) else { return };
+            let Some(mut all) = entity.get_mut::<Self>() else {
+                if !problems.is_empty() {
+                    entity.insert(Self(BTreeMap::from([(finder, problems)])));
+                }
+                return;
+            };
+            if !problems.is_empty() {
+                all.0.insert(finder, problems);
+            } else if all.0.contains_key(finder) {
+                all.0.remove(finder);
+            }
+        });
+    }
+
+    /// All that is wrong with the entity.
+    pub fn iter(&self) -> impl Iterator<Item = &Problem> {
+        self.0.values().flatten()
     }
 }

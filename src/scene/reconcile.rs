@@ -1,6 +1,6 @@
 //! The world becomes what a document says, touching only what differs.
 
-use super::document::SceneDocument;
+use super::document::{SceneDocument, SceneEntity};
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
 use bevy_reflect::{Reflect, TypeRegistry, std_traits::ReflectDefault};
@@ -15,75 +15,145 @@ pub struct SceneEntities(pub HashMap<String, Entity>);
 #[derive(Component, Default)]
 struct FromScene(HashSet<TypeId>);
 
+/// What a reconciliation changed in the world.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Changes {
+    /// Entities that came.
+    pub spawned: usize,
+    /// Entities that went.
+    pub despawned: usize,
+    /// Components that were written.
+    pub written: usize,
+    /// Components that were taken away.
+    pub removed: usize,
+    /// Whether the head of the scene changed.
+    pub head: bool,
+}
+
+impl Changes {
+    /// Whether nothing changed.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// Makes the world's scene the one in `document`, by value: what is equal is not touched, so that only real differences count as
 /// changed. Entities are identified by name.
-pub fn reconcile(world: &mut World, document: &SceneDocument) {
-    world.init_resource::<SceneEntities>();
-    if world.get_resource() != Some(&document.settings) {
+pub fn reconcile(world: &mut World, document: &SceneDocument) -> Changes {
+    reconcile_after(world, document, None)
+}
+
+/// The same, for a world that was made from `last`: what is the same in both documents is not looked at, and so keeps what else may
+/// have been done to it since.
+pub fn reconcile_after(world: &mut World, document: &SceneDocument, last: Option<&SceneDocument>) -> Changes {
+    let mut changes = Changes::default();
+    let is_new = last.is_none_or(|last| last.settings != document.settings);
+    if is_new && world.get_resource() != Some(&document.settings) {
         world.insert_resource(document.settings.clone());
+        changes.head = true;
     }
     let registry = world.get_resource_or_init::<AppTypeRegistry>().clone();
     let registry = registry.read();
-    let names: HashSet<&str> = document.entities.iter().map(|entity| entity.name.as_str()).collect();
-    let gone = world
-        .resource_mut::<SceneEntities>()
-        .0
-        .extract_if(|name, _| !names.contains(name.as_str()))
-        .collect::<Vec<_>>();
-    for (_, entity) in gone {
-        world.despawn(entity);
-    }
-    for written in &document.entities {
-        let known = world
-            .resource::<SceneEntities>()
-            .0
-            .get(&written.name)
-            .copied()
-            .filter(|entity| world.get_entity(*entity).is_ok());
-        let entity = known
-            .unwrap_or_else(|| world.spawn((Name::new(written.name.clone()), FromScene::default())).id());
-        world.resource_mut::<SceneEntities>().0.insert(written.name.clone(), entity);
-        for component in &written.components {
-            write(&mut world.entity_mut(entity), component.type_id, component.value.as_ref(), &registry);
+    world.init_resource::<SceneEntities>();
+    // Borrowed as changed only where an entity comes or goes.
+    world.resource_scope(|world, mut entities: Mut<SceneEntities>| {
+        let mut writer = Writer { world, registry: &registry, changes: &mut changes };
+        writer.despawn_missing(&mut entities, document);
+        for written in &document.entities {
+            let before = last.and_then(|last| last.entity(&written.name));
+            writer.entity(&mut entities, written, before);
         }
-        let now: HashSet<TypeId> = written.components.iter().map(|component| component.type_id).collect();
-        remove_missing(&mut world.entity_mut(entity), &now, &registry);
-    }
+    });
+    changes
 }
 
-/// Inserts a value, unless an equal one is there.
-fn write(entity: &mut EntityWorldMut, type_id: TypeId, value: &dyn Reflect, registry: &TypeRegistry) {
-    let Some(component) = registry.get_type_data::<ReflectComponent>(type_id) else { return };
-    let same = component.reflect(&*entity).and_then(|old| old.reflect_partial_eq(value.as_partial_reflect()));
-    if same != Some(true) {
-        component.insert(entity, value.as_partial_reflect(), registry);
-    }
+struct Writer<'a> {
+    world: &'a mut World,
+    registry: &'a TypeRegistry,
+    changes: &'a mut Changes,
 }
 
-/// Takes away what an earlier version of the scene wrote and this one does not. What the rest of the entity requires goes back to its
-/// default instead.
-fn remove_missing(entity: &mut EntityWorldMut, now: &HashSet<TypeId>, registry: &TypeRegistry) {
-    let before = entity
-        .get_mut::<FromScene>()
-        .map(|mut from_scene| std::mem::replace(&mut from_scene.bypass_change_detection().0, now.clone()));
-    let gone: Vec<TypeId> = before.unwrap_or_default().difference(now).copied().collect();
-    for type_id in gone {
-        if is_required(entity, type_id, now)
-            && let Some(default) = registry.get_type_data::<ReflectDefault>(type_id)
-        {
-            write(entity, type_id, default.default().as_ref(), registry);
-        } else if let Some(component) = registry.get_type_data::<ReflectComponent>(type_id) {
-            component.remove(entity);
+impl Writer<'_> {
+    fn despawn_missing(&mut self, entities: &mut Mut<SceneEntities>, document: &SceneDocument) {
+        let is_gone = |name: &String| document.entity(name).is_none();
+        if !entities.0.keys().any(is_gone) {
+            return;
+        }
+        for (_, entity) in entities.0.extract_if(|name, _| is_gone(name)) {
+            self.changes.despawned += usize::from(self.world.despawn(entity));
         }
     }
+
+    fn entity(
+        &mut self,
+        entities: &mut Mut<SceneEntities>,
+        written: &SceneEntity,
+        before: Option<&SceneEntity>,
+    ) {
+        let known = entities.0.get(&written.name).copied();
+        let known = known.filter(|entity| self.world.get_entity(*entity).is_ok());
+        // One that had to be made anew has nothing of what was written before.
+        let before = before.filter(|_| known.is_some());
+        if before.is_some_and(|before| written.is_shared_with(before)) {
+            return;
+        }
+        let entity = known.unwrap_or_else(|| {
+            self.changes.spawned += 1;
+            let entity = self.world.spawn((Name::new(written.name.clone()), FromScene::default())).id();
+            entities.0.insert(written.name.clone(), entity);
+            entity
+        });
+        for component in written.components.iter() {
+            let before = before.and_then(|before| before.component(component.type_id));
+            if before.is_none_or(|before| !is_equal(before, component.value.as_ref())) {
+                self.write(entity, component.type_id, component.value.as_ref());
+            }
+        }
+        self.remove_missing(entity, written.components.iter().map(|component| component.type_id).collect());
+    }
+
+    /// Inserts a value, unless an equal one is there.
+    fn write(&mut self, entity: Entity, type_id: TypeId, value: &dyn Reflect) {
+        let Some(component) = self.registry.get_type_data::<ReflectComponent>(type_id) else { return };
+        let mut entity = self.world.entity_mut(entity);
+        if !component.reflect(&entity).is_some_and(|old| is_equal(old, value)) {
+            component.insert(&mut entity, value.as_partial_reflect(), self.registry);
+            self.changes.written += 1;
+        }
+    }
+
+    /// Takes away what an earlier version of the scene wrote and this one does not. What the rest of the entity requires goes back to
+    /// its default instead.
+    fn remove_missing(&mut self, entity: Entity, now: HashSet<TypeId>) {
+        let mut entity_mut = self.world.entity_mut(entity);
+        let Some(mut from_scene) = entity_mut.get_mut::<FromScene>() else { return };
+        if from_scene.0 == now {
+            return;
+        }
+        let before = std::mem::replace(&mut from_scene.bypass_change_detection().0, now.clone());
+        for type_id in before.difference(&now).copied() {
+            if self.is_required(type_id, &now)
+                && let Some(default) = self.registry.get_type_data::<ReflectDefault>(type_id)
+            {
+                self.write(entity, type_id, default.default().as_ref());
+            } else if let Some(component) = self.registry.get_type_data::<ReflectComponent>(type_id) {
+                component.remove(&mut self.world.entity_mut(entity));
+                self.changes.removed += 1;
+            }
+        }
+    }
+
+    fn is_required(&self, type_id: TypeId, now: &HashSet<TypeId>) -> bool {
+        let components = self.world.components();
+        let Some(id) = components.get_id(type_id) else { return false };
+        let owners = now
+            .iter()
+            .filter_map(|owner| components.get_id(*owner))
+            .filter_map(|owner| components.get_info(owner));
+        owners.into_iter().any(|owner| owner.required_components().iter_ids().any(|required| required == id))
+    }
 }
 
-fn is_required(entity: &EntityWorldMut, type_id: TypeId, now: &HashSet<TypeId>) -> bool {
-    let components = entity.world().components();
-    let Some(id) = components.get_id(type_id) else { return false };
-    let owners = now
-        .iter()
-        .filter_map(|owner| components.get_id(*owner))
-        .filter_map(|owner| components.get_info(owner));
-    owners.into_iter().any(|owner| owner.required_components().iter_ids().any(|required| required == id))
+fn is_equal(a: &dyn Reflect, b: &dyn Reflect) -> bool {
+    a.reflect_partial_eq(b.as_partial_reflect()) == Some(true)
 }

@@ -17,7 +17,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{SourceError, VolumeData, file};
+use super::{SourceError, VolumeData, file, trail};
 use header::Header;
 
 /// Entries of a folder that are looked at.
@@ -50,6 +50,7 @@ pub(super) fn read_file(path: &Path) -> Result<VolumeData, SourceError> {
 /// If there is no slice in it, or the largest series cannot be read.
 pub(super) fn read_folder(path: &Path) -> Result<VolumeData, SourceError> {
     let io_error = |cause| file::io_error(path, cause);
+    trail::note(path);
     let mut entries: Vec<PathBuf> = Vec::new();
     for entry in fs::read_dir(path).map_err(io_error)?.take(MAX_ENTRIES) {
         entries.push(entry.map_err(io_error)?.path());

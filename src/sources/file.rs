@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-use super::SourceError;
+use super::{SourceError, trail};
 
 /// Names less alike than this are not suggested (0 = nothing in common, 1 = equal).
 const NEAR_ENOUGH: f64 = 0.6;
@@ -17,7 +17,9 @@ const MAX_SUGGESTIONS_SCANNED: usize = 4096;
 /// An open regular file and its length in bytes.
 pub(super) fn open(path: &Path) -> Result<(File, u64), SourceError> {
     // Asked before opening: opening a pipe waits for its writer.
-    let metadata = fs::metadata(path).map_err(|cause| io_error(path, cause))?;
+    let metadata = fs::metadata(path);
+    trail::note_metadata(path, &metadata);
+    let metadata = metadata.map_err(|cause| io_error(path, cause))?;
     if !metadata.is_file() {
         let found = if metadata.is_dir() { "a folder" } else { "a pipe, socket or device" };
         return Err(SourceError::NotAFile { path: path.to_owned(), found });

@@ -19,6 +19,7 @@ pub mod self_describing;
 mod stored;
 mod stream;
 mod text;
+pub mod trail;
 pub mod volume;
 mod vtk;
 

@@ -20,6 +20,7 @@ use super::{
     raw::GZIP_MAGIC,
     stored::{Scaling, StoredFormat},
     stream::{Packing, SampleStream, Surplus, mend_by_header},
+    trail,
     volume::{Endian, VolumeData},
 };
 
@@ -283,6 +284,7 @@ impl<'a> Header<'a> {
         };
         let data = stem.with_extension("img");
         let packed = stem.with_extension("img.gz");
+        trail::note(&data);
         if !data.exists() && packed.exists() { packed } else { data }
     }
 }

@@ -29,7 +29,7 @@ use std::{fs, io::Read, path::Path};
 
 use flate2::read::MultiGzDecoder;
 
-use super::{SourceError, VolumeData, dicom, file, meta_image, nifti, nrrd, raw::GZIP_MAGIC, vtk};
+use super::{SourceError, VolumeData, dicom, file, meta_image, nifti, nrrd, raw::GZIP_MAGIC, trail, vtk};
 
 /// Bytes that are looked at to tell formats apart.
 const HEAD: u64 = 1024;
@@ -49,6 +49,10 @@ pub fn read_volume(path: &Path) -> Result<VolumeData, SourceError> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     // The header of a pair is what describes it, whichever of the two is named.
     let header = path.with_extension("hdr");
+    if ending == "img" {
+        // One that comes later describes it as well.
+        trail::note(&header);
+    }
     if ending == "img" && header.is_file() {
         return read_volume(&header);
     }
