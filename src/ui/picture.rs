@@ -34,7 +34,6 @@ pub(super) fn show(
     );
     let label = "Picture of the scene. Drag to turn it, with Shift or the right button to move it, scroll to zoom; arrow keys likewise";
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, label));
-    ui.painter().rect_filled(rect, 0.0, Color32::BLACK);
     if let Some(texture) = shown.texture {
         let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
         ui.painter().image(texture, rect, whole, Color32::WHITE);

@@ -109,7 +109,7 @@ impl ApplicationHandler<Wake> for Program {
                 open.window.request_redraw();
             }
             WindowEvent::Occluded(false) | WindowEvent::ScaleFactorChanged { .. } => {
-                open.window.request_redraw()
+                open.window.request_redraw();
             }
             _ if response.repaint => open.window.request_redraw(),
             _ => {}
@@ -121,10 +121,10 @@ impl ApplicationHandler<Wake> for Program {
         match event.window_event {
             accesskit_winit::WindowEvent::InitialTreeRequested => open.session.context().enable_accesskit(),
             accesskit_winit::WindowEvent::ActionRequested(request) => {
-                open.state.on_accesskit_action_request(request)
+                open.state.on_accesskit_action_request(request);
             }
             accesskit_winit::WindowEvent::AccessibilityDeactivated => {
-                open.session.context().disable_accesskit()
+                open.session.context().disable_accesskit();
             }
         }
         open.window.request_redraw();
@@ -215,10 +215,12 @@ impl Open {
         if size.width == 0 || size.height == 0 {
             return Ok(false);
         }
+        let started = Instant::now();
         let input = self.state.take_egui_input(&self.window);
         let mut frame = self.session.frame(input, self.painter.picture());
         let platform = std::mem::take(&mut frame.output.platform_output);
         self.state.handle_platform_output(&self.window, platform);
+        let drawn = started.elapsed();
         let is_shown = match self.surface.next(&self.gpu)? {
             Next::Texture(texture) => {
                 let view = texture.texture.create_view(&Default::default());
@@ -233,7 +235,11 @@ impl Open {
             Next::Again => false,
         };
         self.painter.skip(&self.gpu, &mut frame.output);
-        log::debug!("frame {}", self.session.counts().0);
+        log::debug!(
+            "frame {}: drawn in {drawn:?}, shown in {:?}",
+            self.session.counts().0,
+            started.elapsed() - drawn
+        );
         self.failed = if is_shown { 0 } else { self.failed + 1 };
         self.plan(if is_shown { frame.next } else { Some(RETRY * self.failed.min(10)) });
         Ok(frame.quit)

@@ -186,7 +186,9 @@ impl Session {
             let (level, text) = told(problem);
             self.log.tell(level, text);
         }
-        self.tell.filter(|_| !new.is_empty()).map(|tell| tell(new));
+        if let Some(tell) = self.tell.filter(|_| !new.is_empty()) {
+            tell(new);
+        }
         self.told = all.len();
         world.insert_resource(sorted);
     }

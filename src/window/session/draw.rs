@@ -139,9 +139,10 @@ fn prepare_report(world: &mut World, measure: bool) {
     report.measure = measure;
     if !measure {
         world.remove_resource::<PassTimer>();
-    } else if !world.contains_resource::<PassTimer>() {
-        let timer = PassTimer::new(world.resource::<Gpu>());
-        timer.map(|timer| world.insert_resource(timer));
+    } else if !world.contains_resource::<PassTimer>()
+        && let Some(timer) = PassTimer::new(world.resource::<Gpu>())
+    {
+        world.insert_resource(timer);
     }
 }
 
