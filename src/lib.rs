@@ -23,6 +23,7 @@
 //! | to | see |
 //! |---|---|
 //! | write scenes | [`components`]: each is documented with its fields, units, ranges, defaults and RON |
+//! | show a scene in a window, or add to its panels | [`window`], [`ui`] |
 //! | draw from a program | [`render`], [`gpu`]; `examples/render_scene.rs`, `examples/build_in_code.rs` |
 //! | add components and systems | [`prelude`], [`Stage`]; `plugins/README.md` |
 //! | make a command line with plugins of your own | [`cli::run`] |

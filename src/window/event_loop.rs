@@ -221,7 +221,9 @@ impl Open {
         let platform = std::mem::take(&mut frame.output.platform_output);
         self.state.handle_platform_output(&self.window, platform);
         let drawn = started.elapsed();
-        let is_shown = match self.surface.next(&self.gpu)? {
+        let next = self.surface.next(&self.gpu)?;
+        let acquired = started.elapsed();
+        let is_shown = match next {
             Next::Texture(texture) => {
                 let view = texture.texture.create_view(&Default::default());
                 let target = (&view, self.surface.size());
@@ -236,9 +238,9 @@ impl Open {
         };
         self.painter.skip(&self.gpu, &mut frame.output);
         log::debug!(
-            "frame {}: drawn in {drawn:?}, shown in {:?}",
+            "frame {}: drawn after {drawn:?}, acquired {acquired:?}, shown {:?}",
             self.session.counts().0,
-            started.elapsed() - drawn
+            started.elapsed()
         );
         self.failed = if is_shown { 0 } else { self.failed + 1 };
         self.plan(if is_shown { frame.next } else { Some(RETRY * self.failed.min(10)) });

@@ -16,7 +16,9 @@ pub struct Painter {
 impl Painter {
     /// A painter for textures of this format.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
-        let mut renderer = Renderer::new(&gpu.device, format, RendererOptions::default());
+        // Dithering is for smooth gradients, of which panels have none, and costs adapters that are programs a fifth of the painting.
+        let options = RendererOptions { dithering: false, ..RendererOptions::default() };
+        let mut renderer = Renderer::new(&gpu.device, format, options);
         // Until there is a picture.
         let black = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("no picture"),

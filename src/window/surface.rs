@@ -47,6 +47,10 @@ impl WindowSurface {
         if let Some(format) = encoded.into_iter().find(|format| capabilities.formats.contains(format)) {
             config.format = format;
         }
+        if gpu.is_software() {
+            // Frames are late anyway; waiting for the screen's next one would make them later.
+            config.present_mode = wgpu::PresentMode::AutoNoVsync;
+        }
         surface.configure(&gpu.device, &config);
         Ok((Self { instance, surface, config, window }, gpu))
     }
