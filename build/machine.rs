@@ -19,6 +19,25 @@ pub fn tell_gpu() {
     }
 }
 
+/// Sets `cfg(tyndall_display)` where windows can be opened on an X server in memory, Xvfb.
+#[allow(dead_code, reason = "packages whose tests open no window do not ask")]
+pub fn tell_display() {
+    println!("cargo::rustc-check-cfg=cfg(tyndall_display)");
+    println!("cargo::rerun-if-env-changed=PATH");
+    let folders =
+        env::var_os("PATH").map(|path| env::split_paths(&path).collect::<Vec<_>>()).unwrap_or_default();
+    match folders.iter().map(|folder| folder.join("Xvfb")).find(|program| program.is_file()) {
+        Some(program) => {
+            println!("cargo::rerun-if-changed={}", program.display());
+            println!("cargo::rustc-cfg=tyndall_display");
+        }
+        // It may be installed into any of them.
+        None => folders.iter().filter(|folder| folder.is_dir()).for_each(|folder| {
+            println!("cargo::rerun-if-changed={}", folder.display());
+        }),
+    }
+}
+
 /// Whether a manifest of a Vulkan driver can be found as the Vulkan loader would find it: where the environment names some, no others count.
 fn has_vulkan_driver() -> bool {
     for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {

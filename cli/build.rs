@@ -7,4 +7,5 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=../build/machine.rs");
     machine::tell_gpu();
+    machine::tell_display();
 }

@@ -23,6 +23,7 @@
 //! | to | see |
 //! |---|---|
 //! | write scenes | [`components`]: each is documented with its fields, units, ranges, defaults and RON |
+//! | show a scene in a window, or add to its panels | [`window`], [`ui`] |
 //! | draw from a program | [`render`], [`gpu`]; `examples/render_scene.rs`, `examples/build_in_code.rs` |
 //! | follow a scene's files while they are edited | [`scene::LiveScene`] |
 //! | add components and systems | [`prelude`], [`Stage`]; `plugins/README.md` |
@@ -81,14 +82,17 @@ pub mod loading;
 pub mod mirrors;
 pub mod optics;
 mod passes;
+mod picture_file;
 pub mod prelude;
 pub mod render;
 pub mod report;
 pub mod scene;
 pub mod sources;
+pub mod ui;
 mod view;
+pub mod window;
 pub use app::{SceneTime, Stage, TyndallPlugins};
 pub use passes::light_gbuffer::LightTexels;
 pub use passes::scattered_radiosity::Refinement;
 pub use passes::scattering_gbuffer::AutomaticCamera;
-pub use view::Picture;
+pub use view::{Coarseness, Comparison, Drawing, FreeCamera, Picture, SceneBounds, Split, View, Viewpoint};

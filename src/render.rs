@@ -22,6 +22,11 @@ impl Failure {
             self.0 = Some(error);
         }
     }
+
+    /// The failure, which counts as told then.
+    pub fn take(&mut self) -> Option<GpuError> {
+        self.0.take()
+    }
 }
 
 /// A picture in memory, row by row from the top.
@@ -143,7 +148,7 @@ fn update(app: &mut App) -> Result<(), GpuError> {
     app.update();
     let world = app.world_mut();
     world.resource_mut::<Report>().spent("update", started);
-    world.resource_mut::<Failure>().0.take().map_or(Ok(()), Err)
+    world.resource_mut::<Failure>().take().map_or(Ok(()), Err)
 }
 
 fn finish(world: &mut World) -> Result<Image, GpuError> {
@@ -151,18 +156,19 @@ fn finish(world: &mut World) -> Result<Image, GpuError> {
     world.resource::<Gpu>().wait("drawing")?;
     world.resource_mut::<Report>().spent("draw", started);
     let started = Instant::now();
-    let image = read_image(world)?;
+    let image = read_image(world, world.resource::<Picture>().encoded)?;
     world.resource_mut::<Report>().spent("read back", started);
     measure(world)?;
     Ok(image)
 }
 
-fn read_image(world: &World) -> Result<Image, GpuError> {
+/// The picture that was drawn last, encoded for a screen or as radiance.
+pub(crate) fn read_image(world: &World, encoded: bool) -> Result<Image, GpuError> {
     let gpu = world.resource::<Gpu>();
     let picture = world.resource::<Picture>();
     let (width, height) = (picture.size.x, picture.size.y);
     let pixels = match &world.resource::<Tonemap>().encoded {
-        Some(target) if picture.encoded => {
+        Some(target) if encoded => {
             let bytes = read_texture(gpu, &target.texture)?;
             Pixels::Encoded(bytes.chunks_exact(4).map(|texel| [texel[0], texel[1], texel[2]]).collect())
         }

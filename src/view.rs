@@ -1,5 +1,10 @@
 //! The camera and the lights of a frame, as shaders want them.
 
+mod asked;
+
+pub use asked::{Coarseness, Comparison, Drawing, FreeCamera, Picture, Split, Viewpoint};
+pub(crate) use asked::{Part, in_parts, is_wanted};
+
 use crate::Stage;
 use crate::components::{DirectionalLight, Motion, Placement, Projection, SceneSettings, ViewCamera};
 use crate::gpu::{Gpu, uniform_array, uniform_buffer};
@@ -16,33 +21,29 @@ pub(crate) struct ViewPlugin;
 
 impl Plugin for ViewPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Picture>().init_resource::<View>().add_systems(
-            Update,
-            (look, upload_frame.run_if(resource_exists::<Gpu>)).chain().in_set(Stage::View),
-        );
+        app.init_resource::<Picture>()
+            .init_resource::<View>()
+            .init_resource::<FreeCamera>()
+            .init_resource::<SceneBounds>()
+            .init_resource::<Coarseness>()
+            .init_resource::<Comparison>()
+            .init_resource::<Drawing>()
+            .add_systems(
+                Update,
+                (look, upload_frame.run_if(resource_exists::<Gpu>)).chain().in_set(Stage::View),
+            );
     }
 }
 
-/// The picture that is asked for.
-#[derive(Resource, Clone, Debug, PartialEq)]
-pub struct Picture {
-    /// Pixels across and down.
-    pub size: UVec2,
-    /// The camera to take it with; the first by name where none is said.
-    pub camera: Option<String>,
-    /// Whether it is to be encoded for a screen, besides its radiance.
-    pub encoded: bool,
-}
+/// Opposite corners of the box around everything that can be seen, derived in [`Stage::View`]; none where there is nothing.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
+pub struct SceneBounds(pub Option<(DVec3, DVec3)>);
 
-impl Default for Picture {
-    fn default() -> Self {
-        Self { size: UVec2::new(960, 540), camera: None, encoded: true }
-    }
-}
-
-/// Where the picture is taken from, derived from a [`ViewCamera`] or, without one, from what there is to see.
+/// Where the picture is taken from, derived from the [`FreeCamera`], a [`ViewCamera`] or, without either, from what there is to see.
 #[derive(Resource, Clone, Copy, Debug, PartialEq)]
 pub struct View {
+    /// The same in the scene.
+    pub viewpoint: Viewpoint,
     /// Takes the scene to eye space: the camera at the origin, looking along -z, y up, what it looks at one unit away. So whatever the
     /// scale of a scene is, shaders compute with numbers about 1.
     pub eye_from_scene: DAffine3,
@@ -60,22 +61,23 @@ pub struct View {
 
 impl Default for View {
     fn default() -> Self {
-        Self::of(&ViewCamera::default(), DAffine3::IDENTITY)
+        let camera = ViewCamera::default();
+        Self::from_viewpoint(Viewpoint::of(&camera, DAffine3::IDENTITY), camera.exposure, camera.gamma)
     }
 }
 
 impl View {
-    fn of(camera: &ViewCamera, placement: DAffine3) -> Self {
-        let eye = placement.transform_point3(camera.eye.as_dvec3());
-        let target = placement.transform_point3(camera.target.as_dvec3());
-        let up = placement.transform_vector3(camera.up.as_dvec3());
+    /// The view from a place.
+    pub(crate) fn from_viewpoint(viewpoint: Viewpoint, exposure: f32, gamma: f32) -> Self {
+        let Viewpoint { eye, target, up, projection } = viewpoint;
         let reach = eye.distance(target);
         Self {
+            viewpoint,
             eye_from_scene: DAffine3::from_scale(DVec3::splat(reach.recip()))
                 * look_at_affine3(eye, target, up.normalize()),
-            projection: camera.projection,
-            exposure: camera.exposure,
-            gamma: camera.gamma,
+            projection,
+            exposure,
+            gamma,
             reach,
             far: 1.0,
         }
@@ -159,19 +161,23 @@ fn look(
     boxes: Boxes,
     settings: Res<SceneSettings>,
     picture: Res<Picture>,
-    mut view: ResMut<View>,
+    free: Res<FreeCamera>,
+    (mut view, mut bounds): (ResMut<View>, ResMut<SceneBounds>),
 ) {
     let corners = scene_corners(&boxes, &settings);
+    bounds.set_if_neq(SceneBounds(box_around(&corners)));
     let wanted =
         |name: Option<&Name>| picture.camera.is_none() || picture.camera.as_deref() == name.map(Name::as_str);
     let found = cameras
         .iter()
         .filter(|(name, ..)| wanted(*name))
         .min_by_key(|(name, ..)| name.map(|name| name.as_str().to_owned()));
-    let mut new = match found {
-        Some((_, camera, placement)) => View::of(camera, placement.0),
-        None => View::of(&camera_on_all(&corners, picture.size), DAffine3::IDENTITY),
+    let (camera, placement) = match found {
+        Some((_, camera, placement)) => (camera, placement.0),
+        None => (&camera_on_all(bounds.0, picture.size), DAffine3::IDENTITY),
     };
+    let viewpoint = free.0.unwrap_or_else(|| Viewpoint::of(camera, placement));
+    let mut new = View::from_viewpoint(viewpoint, camera.exposure, camera.gamma);
     let depths = corners.iter().map(|corner| -new.eye_from_scene.transform_point3(*corner).z);
     new.far = depths.fold(1.0, f64::max);
     view.set_if_neq(new);
@@ -187,11 +193,28 @@ fn scene_corners((meshes, volumes): &Boxes, settings: &SceneSettings) -> Vec<DVe
     meshes.chain(volumes).collect()
 }
 
+/// Opposite corners of the box around an entity, if it can be seen.
+pub(crate) fn bounds_of(world: &World, entity: Entity) -> Option<(DVec3, DVec3)> {
+    let placement = world.get::<Placement>(entity)?;
+    let own = match (world.get::<LoadedMesh>(entity), world.get::<LoadedVolume>(entity)) {
+        (Some(mesh), _) => mesh.bounds,
+        (None, Some(volume)) => {
+            let half = volume.half_extent() / world.resource::<SceneSettings>().millimetres_per_unit;
+            (-half, half)
+        }
+        (None, None) => return None,
+    };
+    box_around(&placed_corners(placement, own).collect::<Vec<_>>())
+}
+
+fn box_around(corners: &[DVec3]) -> Option<(DVec3, DVec3)> {
+    let first = *corners.first()?;
+    Some(corners.iter().fold((first, first), |(low, high), corner| (low.min(*corner), high.max(*corner))))
+}
+
 /// A camera in front of everything, a little above it, with all of it in the picture.
-fn camera_on_all(corners: &[DVec3], size: UVec2) -> ViewCamera {
-    let first = corners.first().copied().unwrap_or_default();
-    let (low, high) =
-        corners.iter().fold((first, first), |(low, high), corner| (low.min(*corner), high.max(*corner)));
+fn camera_on_all(bounds: Option<(DVec3, DVec3)>, size: UVec2) -> ViewCamera {
+    let (low, high) = bounds.unwrap_or_default();
     let centre = (low + high) / 2.0;
     let radius = (high - low).length() / 2.0;
     let radius = if radius > 0.0 { radius } else { 1.0 };

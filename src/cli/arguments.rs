@@ -16,6 +16,8 @@ pub(super) struct Arguments {
 
 #[derive(Subcommand, Debug)]
 pub(super) enum Command {
+    /// Show a scene in a window, and read it again whenever its files change
+    View(ViewArguments),
     /// Draw a scene into a PNG (exposed and gamma-encoded) or EXR (linear radiance) file
     Render(RenderArguments),
     /// Find every problem of scenes: syntax, names, values, files
@@ -24,6 +26,24 @@ pub(super) enum Command {
     Info(InfoArguments),
     /// Write a starter scene, or a starter plugin crate
     New(NewArguments),
+}
+
+#[derive(Args, Debug)]
+pub(super) struct ViewArguments {
+    /// The scene, a RON file
+    pub scene: PathBuf,
+    /// Pixels of the window across and down; else what it was when it was last closed
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<UVec2>,
+    /// The ViewCamera to begin with, by its entity's name; else the first by name
+    #[arg(long, value_name = "NAME")]
+    pub camera: Option<String>,
+    /// Replace a value of the scene
+    #[arg(long = "set", value_name = "ENTITY.COMPONENT.FIELD=VALUE")]
+    pub overrides: Vec<Override>,
+    /// Use only what WebGPU guarantees on every adapter
+    #[arg(long)]
+    pub portable: bool,
 }
 
 #[derive(Args, Debug)]

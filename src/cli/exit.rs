@@ -3,6 +3,7 @@
 use crate::gpu::GpuError;
 use crate::render::RenderError;
 use crate::scene::{Problem, Severity};
+use crate::window::WindowError;
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use std::io::IsTerminal;
 use std::process::ExitCode;
@@ -48,6 +49,15 @@ impl From<RenderError> for Failure {
         match error {
             RenderError::Scene => Self::Input,
             RenderError::Gpu(error) => error.into(),
+        }
+    }
+}
+
+impl From<WindowError> for Failure {
+    fn from(error: WindowError) -> Self {
+        match error {
+            WindowError::Gpu(error) => error.into(),
+            _ => Self::Machine(error.to_string()),
         }
     }
 }

@@ -16,6 +16,7 @@ mod new;
 mod output;
 mod progress;
 mod render;
+mod view;
 
 use arguments::{Arguments, Command};
 use bevy_app::{App, Plugins};
@@ -36,6 +37,7 @@ pub fn run<M>(plugins: impl Plugins<M>) -> ExitCode {
     let mut app = App::new();
     app.add_plugins(crate::TyndallPlugins).add_plugins(plugins);
     let done = match arguments.command {
+        Command::View(arguments) => view::run(app, &arguments),
         Command::Render(arguments) => render::run(&mut app, &arguments, started),
         Command::Check(arguments) => check::run(&mut app, &arguments),
         Command::Info(arguments) => info::run(&mut app, &arguments),

@@ -73,20 +73,26 @@ fn check_document(app: &mut App, document: &SceneDocument) -> Result<(), Failure
         return Ok(());
     }
     exit::print(&render::all_problems(app, document));
+    Err(check_overrides(document).err().unwrap_or(Failure::Input))
+}
+
+/// Whether every `--set` names something that the scene has.
+pub(super) fn check_overrides(document: &SceneDocument) -> Result<(), Failure> {
     let from_command_line = |problem: &Problem| {
         problem.place.as_ref().is_some_and(|place| place.file.path() == Path::new("--set"))
     };
     if document.problems.iter().any(from_command_line) {
         return Err(Failure::Usage("a `--set` names what the scene does not have; nothing was drawn".into()));
     }
-    Err(Failure::Input)
+    Ok(())
 }
 
 fn notes(problems: &[Problem]) -> Vec<Problem> {
     problems.iter().filter(|problem| problem.severity == Severity::Note).cloned().collect()
 }
 
-fn check_camera(world: &mut World, wanted: Option<&str>) -> Result<(), Failure> {
+/// Whether the scene has the camera that is asked for.
+pub(super) fn check_camera(world: &mut World, wanted: Option<&str>) -> Result<(), Failure> {
     let Some(wanted) = wanted else { return Ok(()) };
     let mut cameras = world.query_filtered::<&Name, With<ViewCamera>>();
     let names: Vec<&str> = cameras.iter(world).map(Name::as_str).collect();

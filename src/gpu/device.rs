@@ -3,8 +3,8 @@ use super::live::ShaderChanges;
 use bevy_ecs::prelude::Resource;
 use std::sync::Arc;
 
-/// The adapter, its device and what it can do.
-#[derive(Resource, Debug)]
+/// The adapter, its device and what it can do. Clones share the device.
+#[derive(Resource, Clone, Debug)]
 pub struct Gpu {
     /// Makes resources.
     pub device: wgpu::Device,
@@ -30,24 +30,31 @@ const OPTIONAL: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
 impl Gpu {
     /// Takes the best adapter of this machine, or the one that the environment asks for (`WGPU_ADAPTER_NAME`, `WGPU_BACKEND`).
     pub async fn new(options: &GpuOptions) -> Result<Self, GpuError> {
-        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+        let adapter = adapter(&Self::instance(None), None).await?;
+        Self::from_adapter(&adapter, options).await
+    }
+
+    /// The same among the adapters that can show something on a surface of `instance`.
+    pub async fn for_surface(
+        instance: &wgpu::Instance,
+        surface: &wgpu::Surface<'_>,
+        options: &GpuOptions,
+    ) -> Result<(Self, wgpu::Adapter), GpuError> {
+        let adapter = adapter(instance, Some(surface)).await?;
+        Ok((Self::from_adapter(&adapter, options).await?, adapter))
+    }
+
+    /// What adapters are found through; for surfaces with the display that they are on.
+    pub fn instance(display: Option<Box<dyn wgpu::wgt::WgpuHasDisplayHandle>>) -> wgpu::Instance {
+        let mut descriptor = match display {
+            Some(display) => wgpu::InstanceDescriptor::new_with_display_handle(display),
+            None => wgpu::InstanceDescriptor::new_without_display_handle(),
+        };
         descriptor.backends = wgpu::Backends::PRIMARY;
         if !cfg!(debug_assertions) {
             descriptor.flags = wgpu::InstanceFlags::empty();
         }
-        let instance = wgpu::Instance::new(descriptor.with_env());
-        let request = wgpu::RequestAdapterOptions {
-            power_preference: wgpu::PowerPreference::HighPerformance,
-            ..Default::default()
-        };
-        let adapter = match wgpu::util::initialize_adapter_from_env(&instance, None).await {
-            Ok(adapter) => adapter,
-            Err(_) => instance
-                .request_adapter(&request)
-                .await
-                .map_err(|error| GpuError::NoAdapter(error.to_string()))?,
-        };
-        Self::from_adapter(&adapter, options).await
+        wgpu::Instance::new(descriptor.with_env())
     }
 
     /// Opens a device on a given adapter.
@@ -86,4 +93,20 @@ impl Gpu {
             .map(|_| ())
             .map_err(|error| GpuError::Driver { doing: doing.into(), reason: error.to_string() })
     }
+}
+
+/// The adapter that the environment asks for, or the best one.
+async fn adapter(
+    instance: &wgpu::Instance,
+    compatible_surface: Option<&wgpu::Surface<'_>>,
+) -> Result<wgpu::Adapter, GpuError> {
+    if let Ok(adapter) = wgpu::util::initialize_adapter_from_env(instance, compatible_surface).await {
+        return Ok(adapter);
+    }
+    let request = wgpu::RequestAdapterOptions {
+        power_preference: wgpu::PowerPreference::HighPerformance,
+        compatible_surface,
+        ..Default::default()
+    };
+    instance.request_adapter(&request).await.map_err(|error| GpuError::NoAdapter(error.to_string()))
 }

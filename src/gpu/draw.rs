@@ -1,7 +1,8 @@
 //! A draw: one shader, one bind group, one colour target.
 
 use super::live::Live;
-use super::{Gpu, GpuError};
+use super::{Gpu, GpuError, Target};
+use std::ops::Range;
 
 /// A render pipeline and the layout of its bind group 0.
 #[derive(Debug)]
@@ -63,7 +64,32 @@ impl Draw {
         target: &wgpu::TextureView,
         timing: Option<wgpu::RenderPassTimestampWrites>,
     ) {
-        let bind_group = self.bind(gpu, resources);
+        self.cover_with(gpu, &[(self.bind(gpu, resources), None)], target, timing);
+    }
+
+    /// Draws over a target in parts, each a stretch of columns with resources of its own, in one pass.
+    pub fn cover_parts(
+        &self,
+        gpu: &Gpu,
+        parts: &[(Range<u32>, Vec<wgpu::BindingResource>)],
+        target: &Target,
+        timing: Option<wgpu::RenderPassTimestampWrites>,
+    ) {
+        let height = target.texture.height();
+        let bound = |(columns, resources): &(Range<u32>, Vec<wgpu::BindingResource>)| {
+            (self.bind(gpu, resources), Some((columns.clone(), height)))
+        };
+        let parts: Vec<_> = parts.iter().map(bound).collect();
+        self.cover_with(gpu, &parts, &target.view, timing);
+    }
+
+    fn cover_with(
+        &self,
+        gpu: &Gpu,
+        parts: &[(wgpu::BindGroup, Option<(Range<u32>, u32)>)],
+        target: &wgpu::TextureView,
+        timing: Option<wgpu::RenderPassTimestampWrites>,
+    ) {
         let label = Some(self.label);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
         let load = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
@@ -78,8 +104,13 @@ impl Draw {
             timestamp_writes: timing,
             ..Default::default()
         });
-        self.begin(&mut pass, &bind_group, &[]);
-        pass.draw(0..3, 0..1);
+        for (bind_group, stretch) in parts {
+            self.begin(&mut pass, bind_group, &[]);
+            if let Some((columns, height)) = stretch {
+                pass.set_scissor_rect(columns.start, 0, columns.end - columns.start, *height);
+            }
+            pass.draw(0..3, 0..1);
+        }
         drop(pass);
         gpu.queue.submit([encoder.finish()]);
     }

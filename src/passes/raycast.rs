@@ -26,13 +26,17 @@ use crate::optics::peak::Peak;
 use crate::render::Failure;
 use crate::scene::{Problem, Problems};
 use crate::sources::BrickRanges;
-use crate::view::{FrameBuffers, Picture, View, far_background, lights_module};
+use crate::view::{
+    Coarseness, Comparison, FrameBuffers, Part, Picture, View, far_background, in_parts, is_wanted,
+    lights_module,
+};
 use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
-use glam::{DVec3, Mat4, UVec2, UVec3, Vec3, Vec4};
+use glam::{DAffine3, DVec3, Mat4, UVec2, UVec3, Vec3, Vec4};
 use std::fmt::Write;
+use std::ops::Range;
 
 /// Casts rays through volumes.
 pub(crate) struct RayCastPlugin;
@@ -42,7 +46,7 @@ impl Plugin for RayCastPlugin {
         app.init_resource::<RayCaster>().init_resource::<Preclassifier>().add_plugins(VolumeUploadPlugin);
         let classifying = (preintegrate, preclassify).run_if(resource_exists::<Gpu>);
         app.add_systems(Update, (classify, classifying).chain().in_set(Stage::Classify))
-            .add_systems(Update, run.in_set(Stage::RayCast).run_if(resource_exists::<Gpu>));
+            .add_systems(Update, run.in_set(Stage::RayCast).run_if(resource_exists::<Gpu>).run_if(is_wanted));
     }
 }
 
@@ -131,6 +135,9 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 /// Textures of the shader besides those of volumes.
 const OTHER_TEXTURES: u32 = 3;
 
+/// Which binding has the volumes as they are drawn in a part of the picture.
+const INSTANCES: usize = 2;
+
 /// Bindings of the shader in front of the volume textures.
 pub(crate) const FIXED_BINDINGS: usize = 7;
 
@@ -163,6 +170,7 @@ fn run(
         Res<Picture>,
         Res<SceneSettings>,
     ),
+    (comparison, coarseness): (Res<Comparison>, Res<Coarseness>),
     volumes: Query<VolumeQuery>,
     surface: Res<Surface>,
     mut caster: ResMut<RayCaster>,
@@ -181,9 +189,19 @@ fn run(
         return;
     }
     let timing = timer.as_mut().and_then(|timer| timer.time("raycast"));
-    let drawn = prepare(&gpu, &picture, &settings, &volumes, &frame, &mut caster, &mut report).map(|()| {
-        let instances = instances(&view, &settings, &volumes, &caster);
-        draw(&gpu, &frame, &settings, &volumes, &instances, &surface, &caster, timing);
+    let parts = in_parts(&comparison, picture.size);
+    let mut all_lit = Vec::new();
+    for part in &parts {
+        all_lit.extend(volumes.iter().map(|volume| lit(volume, &settings, part.shading)));
+    }
+    let kinds = Kinds::of(all_lit, frame.light_count);
+    let drawn = prepare(&gpu, &picture, kinds, &volumes, &frame, &mut caster, &mut report).map(|()| {
+        let of_part = |part: Part| {
+            let shading = part.shading;
+            (part.columns, instances((&view, &coarseness), &settings, &volumes, shading, &caster))
+        };
+        let parts: Vec<_> = parts.into_iter().map(of_part).collect();
+        draw(&gpu, &frame, &settings, &volumes, &parts, &surface, &caster, timing);
         report.ran("raycast", &[("pixels", u64::from(picture.size.x) * u64::from(picture.size.y))]);
     });
     failure.keep(drawn);
@@ -232,14 +250,13 @@ fn classification_of(volume: &VolumeData) -> Classification {
 fn prepare(
     gpu: &Gpu,
     picture: &Picture,
-    settings: &SceneSettings,
+    kinds: Kinds,
     volumes: &[VolumeData],
     frame: &FrameBuffers,
     caster: &mut RayCaster,
     report: &mut Report,
 ) -> Result<(), GpuError> {
     let filtering = volumes.iter().map(|volume| volume.texture.format.filtering).collect();
-    let kinds = Kinds::of(volumes.iter().map(|volume| lit(volume, settings)), frame.light_count);
     let light_volumes = shadows(volumes).iter().map(Option::is_some).collect();
     let scattered = volumes.iter().map(scattered_of).collect();
     let classifications = volumes.iter().map(classification_of).collect();
@@ -459,16 +476,24 @@ fn tables(gpu: &Gpu, volumes: &[VolumeData]) -> Tables {
 }
 
 fn instances(
-    view: &View,
+    view: (&View, &Coarseness),
     settings: &SceneSettings,
     volumes: &[VolumeData],
+    shading: Shading,
     caster: &RayCaster,
 ) -> Vec<VolumeInstance> {
     let starts = caster.tables.as_ref().map(|tables| tables.starts.as_slice()).unwrap_or_default();
     let mut first_sweep = 0;
     let mut all = Vec::new();
     for (volume, start) in volumes.iter().zip(starts) {
-        all.push(instance(view, settings, volume, *start, first_sweep));
+        all.push(instance(
+            view,
+            volume,
+            scene_from_texture(volume.loaded, volume.placement, settings),
+            lit(volume, settings, shading),
+            *start,
+            first_sweep,
+        ));
         first_sweep += volume.light_volumes.map_or(0, |own| own.0.len() as u32);
     }
     all
@@ -489,25 +514,29 @@ fn light_volumes<'a>(volumes: &[VolumeData<'a>]) -> Vec<&'a LightVolume> {
 }
 
 fn instance(
-    view: &View,
-    settings: &SceneSettings,
+    (view, coarseness): (&View, &Coarseness),
     volume: &VolumeData,
+    scene_from_texture: DAffine3,
+    lit: Lit,
     bricks_start: u32,
     first_sweep: u32,
 ) -> VolumeInstance {
-    let VolumeData { loaded, classified, texture, placement, ray_cast, voxels, summed, .. } = volume;
-    let eye_from_texture = view.eye_from_scene * scene_from_texture(loaded, placement, settings);
+    let VolumeData { loaded, classified, texture, ray_cast, voxels, summed, .. } = volume;
+    let eye_from_texture = view.eye_from_scene * scene_from_texture;
     let size = DVec3::from(loaded.data.size.map(f64::from));
     let axes = eye_from_texture.matrix3;
     let voxel =
         (axes.x_axis.length() / size.x).min(axes.y_axis.length() / size.y).min(axes.z_axis.length() / size.z);
     let (lookup_scale, lookup_offset) = classified.lookup(texture.format);
     let [greatest_colour, greatest_extinction] = voxels.map_or([1.0; 2], |voxels| voxels.greatest);
-    let lit = lit(volume, settings);
+    let coarser = match classification_of(volume) {
+        Classification::PreIntegrated => 1.0,
+        _ => coarseness.step,
+    };
     VolumeInstance {
         texture_from_eye: glam::DMat4::from(eye_from_texture.inverse()).as_mat4(),
         size: size.as_vec3(),
-        step: (voxel * f64::from(ray_cast.step)) as f32,
+        step: (voxel * f64::from(ray_cast.step * coarser)) as f32,
         lookup_scale,
         lookup_offset,
         table_entries: classified.table.entries.len() as u32,
@@ -533,9 +562,13 @@ fn instance(
     }
 }
 
-/// How a volume is lit.
-fn lit(volume: &VolumeData, settings: &SceneSettings) -> Lit {
-    let mut lit = Lit::of(&lighting_in_force(volume.lighting, volume.shading, settings));
+/// How a volume is lit where the picture is shaded so.
+fn lit(volume: &VolumeData, settings: &SceneSettings, shading: Shading) -> Lit {
+    let lighting = lighting_in_force(volume.lighting, volume.shading, settings);
+    let mut lit = Lit::of(&match shading {
+        Shading::Scattering => lighting,
+        Shading::Local => lighting.local(),
+    });
     let is_scattering = [SCATTERS_ONCE, SCATTERS].contains(&lit.kind);
     if is_scattering && volume.light_volumes.is_none_or(|own| own.0.is_empty()) {
         // Nothing arrives where there is no light.
@@ -593,7 +626,7 @@ fn draw(
     frame: &FrameBuffers,
     settings: &SceneSettings,
     volumes: &[VolumeData],
-    instances: &[VolumeInstance],
+    parts: &[(Range<u32>, Vec<VolumeInstance>)],
     surface: &Surface,
     caster: &RayCaster,
     timing: Option<wgpu::RenderPassTimestampWrites>,
@@ -603,7 +636,11 @@ fn draw(
     else {
         return;
     };
-    let instances = uniform_array(gpu, "volume instances", instances, instances.len());
+    let instances_in = |(_, instances): &(_, Vec<VolumeInstance>)| {
+        uniform_array(gpu, "volume instances", instances, instances.len())
+    };
+    let instances: Vec<_> = parts.iter().map(instances_in).collect();
+    let Some(first) = instances.first() else { return };
     let (entries, distances) = (view_of(&tables.entries), view_of(&tables.distances));
     let background;
     let behind = match surface.colour() {
@@ -616,7 +653,7 @@ fn draw(
     let mut resources = vec![
         frame.frame.as_entire_binding(),
         frame.lights.as_entire_binding(),
-        instances.as_entire_binding(),
+        first.as_entire_binding(),
         wgpu::BindingResource::TextureView(&entries),
         wgpu::BindingResource::TextureView(&distances),
         wgpu::BindingResource::TextureView(behind),
@@ -640,7 +677,12 @@ fn draw(
         std::iter::once(&summed.fluence).chain(eye_light.map(|eye_light| &eye_light.grid))
     });
     resources.extend(grids.map(|grid| wgpu::BindingResource::TextureView(&grid.view)));
-    draw.cover(gpu, &resources, &target.view, timing);
+    let mut bound = Vec::new();
+    for ((columns, _), instances) in parts.iter().zip(&instances) {
+        resources[INSTANCES] = instances.as_entire_binding();
+        bound.push((columns.clone(), resources.clone()));
+    }
+    draw.cover_parts(gpu, &bound, target, timing);
 }
 
 fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {

@@ -130,6 +130,15 @@ pub(crate) fn run(
     report.hold("scattered_radiosity", held);
 }
 
+/// Of how many sets of samples the mesh that has fewest is the mean, and how many are wanted; none where no mesh is to be refined.
+pub(crate) fn refined(world: &mut World, wanted: u32) -> Option<(u32, u32)> {
+    let mut bodies = world.query_filtered::<(&ScatteringMaps, Option<&ScatteredRadiosity>), With<Body>>();
+    let progressive = bodies.iter(world).filter(|(maps, _)| maps.progressive);
+    let sets = |radiosity: &ScatteredRadiosity| radiosity.made.iter().map(|(_, sets)| *sets).min();
+    let fewest = progressive.filter_map(|(_, radiosity)| radiosity.map_or(Some(0), sets)).min()?;
+    Some((fewest.min(wanted), wanted))
+}
+
 impl ScatteredRadiosity {
     fn new(gpu: &Gpu, size: u64, is_shared: bool, subsurface: &Subsurface) -> Option<Self> {
         let dipole = (subsurface.material.clone(), subsurface.model, Dipole::new(subsurface)?);

@@ -9,15 +9,18 @@ use super::light_volume::lookup;
 use super::light_volume::through::{self, Shading, VeilCount, Veils};
 use super::surface_points::SurfacePoints;
 use super::upload::MeshBuffers;
-use crate::components::{Phong, Placement, SceneSettings, Subsurface};
+use crate::components::{Phong, Placement, SceneSettings, Shading as ShadingKind, Subsurface};
 use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, begin, binding, uniform_each};
 use crate::render::Failure;
-use crate::view::{FrameBuffers, Picture, View, far_background, lights_module, to_eye};
+use crate::view::{
+    Comparison, FrameBuffers, Part, Picture, View, far_background, in_parts, is_wanted, lights_module, to_eye,
+};
 use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
 use encase::ShaderSize;
 use glam::{Mat4, Vec3};
+use std::ops::Range;
 
 /// Draws meshes.
 pub(crate) struct SurfacePlugin;
@@ -25,7 +28,7 @@ pub(crate) struct SurfacePlugin;
 impl Plugin for SurfacePlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Surface>().add_plugins(super::upload::MeshUploadPlugin);
-        app.add_systems(Update, run.in_set(Stage::Surface).run_if(resource_exists::<Gpu>));
+        app.add_systems(Update, run.in_set(Stage::Surface).run_if(resource_exists::<Gpu>).run_if(is_wanted));
     }
 }
 
@@ -95,15 +98,18 @@ struct Drawn<'a> {
     /// What leaves each vertex, of a translucent mesh.
     radiosity: Option<&'a wgpu::Buffer>,
     instance: MeshInstance,
+    /// The columns of the picture in which it is drawn so.
+    columns: Range<u32>,
 }
 
 fn run(
-    (gpu, frame, view, picture, settings): (
+    (gpu, frame, view, picture, settings, comparison): (
         Res<Gpu>,
         Res<FrameBuffers>,
         Res<View>,
         Res<Picture>,
         Res<SceneSettings>,
+        Res<Comparison>,
     ),
     meshes: Meshes,
     (volumes, shading): (Query<(), With<super::upload::VolumeTexture>>, Shading),
@@ -119,8 +125,19 @@ fn run(
     }
     let timing = timer.as_mut().and_then(|timer| timer.time("surface"));
     let veils = Veils::gather(&shading, &settings, None);
-    let drawn =
-        draw(&gpu, &frame, &view, &picture, &settings, meshes, &veils, &mut surface, timing, &mut report);
+    let parts = in_parts(&comparison, picture.size);
+    let drawn = draw(
+        &gpu,
+        &frame,
+        &view,
+        &picture,
+        &settings,
+        (meshes, &parts),
+        &veils,
+        &mut surface,
+        timing,
+        &mut report,
+    );
     failure.keep(drawn);
 }
 
@@ -131,14 +148,15 @@ fn draw(
     view: &View,
     picture: &Picture,
     settings: &SceneSettings,
-    meshes: Meshes,
+    (meshes, parts): (Meshes, &[Part]),
     veils: &Veils,
     surface: &mut Surface,
     timing: Option<wgpu::RenderPassTimestampWrites>,
     report: &mut Report,
 ) -> Result<(), GpuError> {
     resize(gpu, surface, picture, report)?;
-    let mut drawn: Vec<Drawn> = meshes.iter().map(|mesh| draw_of(view, mesh)).collect();
+    let in_part = |part| meshes.iter().map(move |mesh| draw_of(view, mesh, part));
+    let mut drawn: Vec<Drawn> = parts.iter().flat_map(in_part).collect();
     drawn.sort_by_key(|mesh| mesh.radiosity.is_some());
     let is_translucent = |mesh: &Drawn| mesh.radiosity.is_some();
     let variant = Variant { light_capacity: frame.light_capacity, veils: veils.count() };
@@ -173,6 +191,8 @@ fn draw(
         let bind_group = draw.bind(gpu, &resources);
         for (index, mesh) in own {
             draw.begin(&mut pass, &bind_group, &[index as u32 * stride]);
+            let columns = &mesh.columns;
+            pass.set_scissor_rect(columns.start, 0, columns.end - columns.start, picture.size.y);
             if let Some(radiosity) = mesh.radiosity {
                 pass.set_vertex_buffer(1, radiosity.slice(..));
             }
@@ -245,18 +265,21 @@ fn draw_of<'a>(
         Option<&Subsurface>,
         Option<(&Body, &'a SurfacePoints, &'a Radiosity)>,
     ),
+    part: &Part,
 ) -> Drawn<'a> {
     // The local model beside a scattering technique counts for more than a `Phong` of the entity.
     let phong = subsurface.map(|subsurface| &subsurface.local).or(phong).cloned().unwrap_or_default();
     let mut instance = instance(view, placement, &phong);
+    let columns = part.columns.clone();
+    let scattered = scattered.filter(|_| part.shading == ShadingKind::Scattering);
     let (Some((_, points, radiosity)), Some(subsurface)) = (scattered, subsurface) else {
-        return Drawn { mesh, radiosity: None, instance };
+        return Drawn { mesh, radiosity: None, instance, columns };
     };
     let specular = subsurface.specular.as_ref();
     instance.specular = Vec3::splat(specular.map_or(0.0, |specular| specular.strength));
     instance.shininess = specular.map_or(0.0, |specular| specular.shininess);
     instance.eta = subsurface.material.coefficients().map_or(1.0, |channels| channels[0].eta as f32);
-    Drawn { mesh: &points.mesh, radiosity: Some(&radiosity.points), instance }
+    Drawn { mesh: &points.mesh, radiosity: Some(&radiosity.points), instance, columns }
 }
 
 fn instance(view: &View, placement: &Placement, phong: &Phong) -> MeshInstance {

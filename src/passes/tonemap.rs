@@ -6,7 +6,7 @@ use super::raycast::RayCaster;
 use super::surface::Surface;
 use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, binding, uniform_buffer};
 use crate::render::Failure;
-use crate::view::{Picture, View};
+use crate::view::{Picture, View, is_wanted};
 use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
@@ -17,7 +17,7 @@ pub(crate) struct TonemapPlugin;
 impl Plugin for TonemapPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Tonemap>()
-            .add_systems(Update, run.in_set(Stage::Tonemap).run_if(resource_exists::<Gpu>));
+            .add_systems(Update, run.in_set(Stage::Tonemap).run_if(resource_exists::<Gpu>).run_if(is_wanted));
     }
 }
 

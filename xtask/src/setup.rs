@@ -11,13 +11,36 @@ use crate::tools;
 
 const DEBIAN_PACKAGES: [&str; 2] = ["mesa-vulkan-drivers", "libvulkan1"];
 
-/// Finds or installs an adapter and, for the gate, the tools.
+/// An X server in memory and what a window loads at run time; nothing of this is needed to compile.
+const DEBIAN_WINDOW_PACKAGES: [&str; 7] =
+    ["xvfb", "libx11-6", "libx11-xcb1", "libxcursor1", "libxi6", "libxkbcommon0", "libxkbcommon-x11-0"];
+
+/// Finds or installs an adapter and what the tests of the window take and, for the gate, the tools.
 pub fn run(ci: bool) -> Result<()> {
     match adapter()? {
         Adapter::System(name) => eprintln!("adapter: {name}, part of the system"),
         Adapter::Vulkan(manifest) => eprintln!("adapter: Vulkan, by {}", manifest.display()),
     }
+    eprintln!("window: {}", window()?);
     if ci { tools::install_missing() } else { Ok(()) }
+}
+
+/// What windows are tested on, installed first where that is possible without asking. Without it those tests are ignored.
+fn window() -> Result<String> {
+    if !cfg!(target_os = "linux") {
+        return Ok("its tests need Xvfb, and are ignored here".to_owned());
+    }
+    if process::find("Xvfb").is_none() && is_debian() && is_root() {
+        eprintln!("no Xvfb\ninstalling {}", DEBIAN_WINDOW_PACKAGES.join(" "));
+        install_on_debian(&DEBIAN_WINDOW_PACKAGES)?;
+    }
+    Ok(match process::find("Xvfb") {
+        Some(server) => format!("tested on {}", server.display()),
+        None => format!(
+            "its tests are ignored without Xvfb; on Debian, as root:\n    apt-get install {}",
+            DEBIAN_WINDOW_PACKAGES.join(" ")
+        ),
+    })
 }
 
 /// The adapter, installed first where that is possible without asking.
@@ -30,7 +53,7 @@ pub fn adapter() -> Result<Adapter> {
         bail!("{}\n{}", complaint(&missing), advice(&os_release()));
     }
     eprintln!("{}\ninstalling {}", complaint(&missing), DEBIAN_PACKAGES.join(" and "));
-    install_on_debian()?;
+    install_on_debian(&DEBIAN_PACKAGES)?;
     adapter::find().map_err(|missing| {
         let set = "Are VK_ICD_FILENAMES, VK_DRIVER_FILES or LD_LIBRARY_PATH set to something else?";
         anyhow::anyhow!(
@@ -48,7 +71,7 @@ fn complaint(missing: &Missing) -> &'static str {
     }
 }
 
-fn install_on_debian() -> Result<()> {
+fn install_on_debian(packages: &[&str]) -> Result<()> {
     let apt_get = |arguments: &[&str]| {
         let wait_for_others = ["-o", "DPkg::Lock::Timeout=300"];
         Program::new("apt-get")
@@ -56,7 +79,7 @@ fn install_on_debian() -> Result<()> {
             .arguments(wait_for_others)
             .variable("DEBIAN_FRONTEND", "noninteractive")
     };
-    let install = || apt_get(&["install", "-y", "--no-install-recommends"]).arguments(DEBIAN_PACKAGES);
+    let install = || apt_get(&["install", "-y", "--no-install-recommends"]).arguments(packages);
     // The package lists of a fresh image are empty, those of an old one name files that are gone.
     if install().capture().is_ok() {
         return Ok(());

@@ -1,0 +1,34 @@
+//! `tyndall view`.
+
+use super::arguments::ViewArguments;
+use super::exit::{self, Failure};
+use super::render::{check_camera, check_overrides};
+use crate::gpu::GpuOptions;
+use crate::render;
+use crate::window::{self, SessionOptions, WindowOptions};
+use bevy_app::App;
+
+pub(super) fn run(mut app: App, arguments: &ViewArguments) -> Result<(), Failure> {
+    let document = render::load_scene(&mut app, &arguments.scene, &arguments.overrides);
+    if document.has_errors() {
+        // What is wrong in the files is told in the window, where one sees it mended; what is wrong here can only be mended here.
+        let at_fault =
+            check_overrides(&document).err().or((!arguments.scene.is_file()).then_some(Failure::Input));
+        if let Some(failure) = at_fault {
+            exit::print(&render::problems(app.world(), &document));
+            return Err(failure);
+        }
+    } else {
+        check_camera(app.world_mut(), arguments.camera.as_deref())?;
+    }
+    let session = SessionOptions {
+        scene: arguments.scene.clone(),
+        overrides: arguments.overrides.clone(),
+        document,
+        camera: arguments.camera.clone(),
+        screenshots: ".".into(),
+        tell: Some(exit::print),
+    };
+    let gpu = GpuOptions { portable: arguments.portable };
+    Ok(window::run(app, WindowOptions { size: arguments.size, gpu, session })?)
+}

@@ -1,0 +1,70 @@
+//! What panels ask for and cannot do themselves.
+
+use bevy_ecs::prelude::Entity;
+use glam::DVec2;
+
+/// Something that a person asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// To turn the scene, by heights of the picture, y down.
+    Orbit(DVec2),
+    /// To move the scene across the view, likewise.
+    Pan(DVec2),
+    /// To show everything `1 / factor` times as large, around a place of the picture.
+    Zoom {
+        /// Factor on the distance from which the target is seen.
+        factor: f64,
+        /// From the middle of the picture, in half heights, y up.
+        cursor: DVec2,
+    },
+    /// To bring an entity into the picture, or everything.
+    Frame(Option<Entity>),
+    /// To turn perspective into an orthographic view, or back.
+    ToggleProjection,
+    /// To look along an axis of the scene.
+    LookAlong(Axis),
+    /// To go back to the scene's own camera.
+    ResetCamera,
+    /// To write the picture into a file.
+    Screenshot(PictureFile),
+    /// To close the window.
+    Quit,
+}
+
+/// The side of the scene from which one looks along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// From +x.
+    Right,
+    /// From -x.
+    Left,
+    /// From +y.
+    Above,
+    /// From -y.
+    Below,
+    /// From +z.
+    Front,
+    /// From -z.
+    Back,
+}
+
+impl Axis {
+    /// All of them, with what a person calls them and the keys that stand for them.
+    pub(super) const ALL: [(Self, &'static str, egui::Key); 6] = [
+        (Self::Front, "Front (+z)", egui::Key::Num1),
+        (Self::Back, "Back (-z)", egui::Key::Num2),
+        (Self::Right, "Right (+x)", egui::Key::Num3),
+        (Self::Left, "Left (-x)", egui::Key::Num4),
+        (Self::Above, "Above (+y)", egui::Key::Num5),
+        (Self::Below, "Below (-y)", egui::Key::Num6),
+    ];
+}
+
+/// A kind of file that pictures are written to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureFile {
+    /// As it is shown.
+    Png,
+    /// Linear radiance.
+    Exr,
+}

@@ -1,0 +1,73 @@
+//! The bar above everything.
+
+use super::shading::START;
+use super::{Axis, Command, OpenPanels, PictureFile, Shown};
+use crate::view::Comparison;
+use bevy_ecs::prelude::*;
+use egui::Ui;
+
+pub(super) fn show(ui: &mut Ui, world: &mut World, shown: &Shown, commands: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        camera(ui, shown, commands);
+        ui.separator();
+        compare(ui, world);
+        ui.separator();
+        ui.menu_button("Screenshot", |ui| {
+            let kinds = [
+                (PictureFile::Png, "PNG", "As it is shown, exposed and encoded (F12)"),
+                (PictureFile::Exr, "EXR", "Linear radiance (Shift+F12)"),
+            ];
+            for (kind, name, tip) in kinds {
+                if ui.button(name).on_hover_text(tip).clicked() {
+                    commands.push(Command::Screenshot(kind));
+                    ui.close();
+                }
+            }
+        });
+        ui.separator();
+        let mut open = *world.get_resource_or_init::<OpenPanels>();
+        ui.toggle_value(&mut open.entities, "Entities")
+            .on_hover_text("Entities of the scene, and what is wrong with them");
+        ui.toggle_value(&mut open.inspector, "Inspector").on_hover_text("What concerns the selected entity");
+        ui.toggle_value(&mut open.report, "Report")
+            .on_hover_text("Passes, times and memory of the last picture");
+        ui.toggle_value(&mut open.log, "Log").on_hover_text("What was told since the window opened");
+        world.get_resource_or_init::<OpenPanels>().set_if_neq(open);
+    });
+}
+
+fn camera(ui: &mut Ui, shown: &Shown, commands: &mut Vec<Command>) {
+    if ui
+        .button("Frame all")
+        .on_hover_text("Bring everything into the picture (F, or a double click)")
+        .clicked()
+    {
+        commands.push(Command::Frame(None));
+    }
+    let mut is_orthographic = shown.is_orthographic;
+    let tip = "Parallel rays; what the camera turns about keeps its size (O)";
+    if ui.toggle_value(&mut is_orthographic, "Orthographic").on_hover_text(tip).changed() {
+        commands.push(Command::ToggleProjection);
+    }
+    ui.menu_button("View from", |ui| {
+        for (number, (axis, name, _)) in Axis::ALL.into_iter().enumerate() {
+            if ui.button(name).on_hover_text(format!("Look along this axis ({})", number + 1)).clicked() {
+                commands.push(Command::LookAlong(axis));
+                ui.close();
+            }
+        }
+    });
+    let reset = ui.add_enabled(shown.is_free, egui::Button::new("Scene's camera"));
+    if reset.on_hover_text("Go back to the camera that the scene says (Home)").clicked() {
+        commands.push(Command::ResetCamera);
+    }
+}
+
+fn compare(ui: &mut Ui, world: &mut World) {
+    let mut comparison = world.get_resource_or_init::<Comparison>();
+    let mut on = comparison.0.is_some();
+    let tip = "Scattering on one side of a line that can be dragged, local models on the other (C)";
+    if ui.toggle_value(&mut on, "Compare").on_hover_text(tip).changed() {
+        comparison.0 = on.then_some(START);
+    }
+}

@@ -1,0 +1,264 @@
+//! A scene and the panels around it, without a window.
+
+mod draw;
+
+use super::files::{self, Files, told};
+use super::orbit::Orbit;
+use super::pace::Pace;
+use super::stale::Drawn;
+use crate::gpu::Gpu;
+use crate::passes::tonemap::Tonemap;
+use crate::scene::{Override, Problem, Problems, SceneDocument};
+use crate::ui::{self, Command, Laid, Level, Log, PictureFile, Shown};
+use crate::view::{FreeCamera, Picture, SceneBounds, View, bounds_of};
+use bevy_app::App;
+use bevy_ecs::prelude::*;
+use egui::{FullOutput, RawInput, TextureId, ViewportId};
+use glam::UVec2;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// What a session shows.
+#[derive(Default)]
+pub struct SessionOptions {
+    /// The scene.
+    pub scene: PathBuf,
+    /// Values of it that are replaced.
+    pub overrides: Vec<Override>,
+    /// What its files say, as it has been read into the app.
+    pub document: SceneDocument,
+    /// The camera to begin with; the first by name where none is said.
+    pub camera: Option<String>,
+    /// Where screenshots go.
+    pub screenshots: PathBuf,
+    /// Told of every problem that is found, besides the panels.
+    pub tell: Option<fn(&[Problem])>,
+}
+
+/// A scene and the panels around it.
+pub struct Session {
+    app: App,
+    context: egui::Context,
+    files: Files,
+    /// How many of the problems have been told, and to whom besides the panels.
+    told: usize,
+    tell: Option<fn(&[Problem])>,
+    log: Log,
+    screenshots: PathBuf,
+    /// The camera, once it has been moved.
+    orbit: Option<Orbit>,
+    pace: Pace,
+    drawn: Drawn,
+    shown: Shown,
+    /// Pixels of the picture when it is drawn in full.
+    room: UVec2,
+    /// When what moved will be taken to rest.
+    settles: Instant,
+    /// Whether another set of samples came to nothing.
+    is_stuck: bool,
+    wanted: Vec<PictureFile>,
+    pictures: u64,
+    frames: u64,
+}
+
+/// What came of a frame.
+pub struct Frame {
+    /// What is to be painted, and done by the window.
+    pub output: FullOutput,
+    /// How long until the next frame is wanted, if nothing happens before; never where there is none.
+    pub next: Option<Duration>,
+    /// Whether the window is to be closed.
+    pub quit: bool,
+}
+
+impl Session {
+    /// Takes over an app into which the scene has been read and which has a [`Gpu`].
+    pub fn new(mut app: App, options: SessionOptions) -> Self {
+        let SessionOptions { scene, overrides, document, camera, screenshots, tell } = options;
+        ui::init(app.world_mut());
+        app.insert_resource(Picture { camera, ..Default::default() });
+        let gpu = app.world().resource::<Gpu>();
+        let pace = Pace::new(gpu.is_software());
+        let shown = Shown { adapter: gpu.info.name.clone(), ..Default::default() };
+        let log = app.world().resource::<Log>().clone();
+        let told = log.clone();
+        // What the driver reports between passes, running out of memory above all, is no reason to end.
+        gpu.device.on_uncaptured_error(std::sync::Arc::new(move |error: wgpu::Error| {
+            log::error!("{error}");
+            told.tell(Level::Error, error.to_string());
+        }));
+        let context = egui::Context::default();
+        let mut session = Self {
+            app,
+            context,
+            files: Files::new(scene, overrides, document),
+            told: 0,
+            tell,
+            log,
+            screenshots,
+            orbit: None,
+            pace,
+            drawn: Drawn::default(),
+            shown,
+            room: UVec2::ZERO,
+            settles: Instant::now(),
+            is_stuck: false,
+            wanted: Vec::new(),
+            pictures: 0,
+            frames: 0,
+        };
+        session.tell_problems();
+        session
+    }
+
+    /// The world that is shown.
+    pub fn world(&mut self) -> &mut World {
+        self.app.world_mut()
+    }
+
+    /// What lays out the panels.
+    pub fn context(&self) -> &egui::Context {
+        &self.context
+    }
+
+    /// The picture that was drawn last.
+    pub fn picture(&self) -> Option<&wgpu::Texture> {
+        self.app.world().resource::<Tonemap>().encoded.as_ref().map(|target| &target.texture)
+    }
+
+    /// Frames laid out, and pictures drawn, since the session began.
+    pub fn counts(&self) -> (u64, u64) {
+        (self.frames, self.pictures)
+    }
+
+    /// What the panels are told.
+    pub fn shown(&self) -> &Shown {
+        &self.shown
+    }
+
+    /// Reads the scene again if its files have changed, and says whether it did. Asks for no picture itself: [`Self::frame`] does if one is due.
+    pub fn poll(&mut self) -> bool {
+        if !self.files.poll(&mut self.app) {
+            return false;
+        }
+        if self.files.document.has_errors() {
+            self.log.tell(Level::Error, "the scene has errors; the last good one is shown");
+        } else {
+            self.log.tell(Level::Info, "the scene was read again");
+        }
+        self.told = 0;
+        self.tell_problems();
+        true
+    }
+
+    /// How often [`Self::poll`] wants to be called.
+    pub fn poll_interval(&self) -> Duration {
+        files::INTERVAL
+    }
+
+    /// Lays out the panels, does what a person asks for in them, and draws the picture if it is not that of the scene any more. `texture`
+    /// stands for the picture.
+    pub fn frame(&mut self, input: RawInput, texture: TextureId) -> Frame {
+        self.frames += 1;
+        self.shown.texture = Some(texture);
+        let (output, laid) = self.lay_out(input);
+        let size = self.size_of(&laid, output.pixels_per_point);
+        let quit = laid.commands.contains(&Command::Quit);
+        self.obey(laid.commands, size);
+        let before = (self.shown.pixels, self.shown.took, self.shown.is_coarse, self.shown.refined);
+        let next = self.draw_if_due(size);
+        let after = (self.shown.pixels, self.shown.took, self.shown.is_coarse, self.shown.refined);
+        // What the panels say of the picture is to be that of this one.
+        let next = if before == after { next } else { Some(Duration::ZERO) };
+        let animation =
+            output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |root| root.repaint_delay);
+        let animation = (animation < Duration::from_secs(3600)).then_some(animation);
+        Frame { next: [next, animation].into_iter().flatten().min(), output, quit }
+    }
+
+    /// Tells of the problems that have been found since the last time.
+    fn tell_problems(&mut self) {
+        let world = self.app.world_mut();
+        without_repetitions(&mut world.resource_mut::<Problems>().0);
+        let (sorted, all) = self.files.problems(world);
+        let new = all.get(self.told..).unwrap_or_default();
+        for problem in new {
+            let (level, text) = told(problem);
+            self.log.tell(level, text);
+        }
+        if let Some(tell) = self.tell.filter(|_| !new.is_empty()) {
+            tell(new);
+        }
+        self.told = all.len();
+        world.insert_resource(sorted);
+    }
+
+    fn lay_out(&mut self, input: RawInput) -> (FullOutput, Laid) {
+        let mut laid: Option<Laid> = None;
+        let (context, world) = (self.context.clone(), self.app.world_mut());
+        let output = context.run_ui(input, |ui| {
+            let mut now = ui::panels(ui, world, &self.shown);
+            // Laid out once more where sizes were not known before; what was asked for the first time holds.
+            if let Some(before) = laid.take() {
+                now.commands.splice(0..0, before.commands);
+            }
+            laid = Some(now);
+        });
+        let laid = laid.unwrap_or(Laid { picture: egui::Rect::ZERO, commands: Vec::new() });
+        (output, laid)
+    }
+
+    /// Pixels of the picture when it is drawn in full.
+    fn size_of(&self, laid: &Laid, pixels_per_point: f32) -> UVec2 {
+        let most = self.app.world().resource::<Gpu>().device.limits().max_texture_dimension_2d;
+        let pixels = |points: f32| ((points * pixels_per_point).round() as u32).clamp(1, most);
+        UVec2::new(pixels(laid.picture.width()), pixels(laid.picture.height()))
+    }
+
+    fn obey(&mut self, commands: Vec<Command>, size: UVec2) {
+        let world = self.app.world_mut();
+        let bounds = world.resource::<SceneBounds>().0;
+        let viewpoint = world.resource::<View>().viewpoint;
+        let aspect = f64::from(size.x) / f64::from(size.y);
+        for command in commands {
+            // The first movement takes over the camera as it is.
+            let mut orbit = self.orbit.unwrap_or_else(|| Orbit::of(&viewpoint));
+            match command {
+                Command::Orbit(by) => orbit.orbit(by),
+                Command::Pan(by) => orbit.pan(by),
+                Command::Zoom { factor, cursor } => orbit.zoom(factor, cursor, bounds),
+                Command::ToggleProjection => orbit.toggle_projection(),
+                Command::LookAlong(axis) => orbit.look_along(axis),
+                Command::Frame(entity) => {
+                    let own = entity.and_then(|entity| bounds_of(world, entity));
+                    if let Some(bounds) = own.or(bounds) {
+                        orbit.frame(bounds, aspect);
+                    }
+                }
+                Command::ResetCamera => {
+                    self.orbit = None;
+                    continue;
+                }
+                Command::Screenshot(kind) => {
+                    self.wanted.push(kind);
+                    continue;
+                }
+                Command::Quit => continue,
+            }
+            self.orbit = Some(orbit);
+        }
+        let free = FreeCamera(self.orbit.map(|orbit| orbit.viewpoint(bounds)));
+        world.resource_mut::<FreeCamera>().set_if_neq(free);
+        self.shown.is_free = self.orbit.is_some();
+        self.shown.is_orthographic = self.orbit.unwrap_or(Orbit::of(&viewpoint)).is_orthographic();
+    }
+}
+
+/// Passes that find the same thing wrong in every picture say so in every picture.
+fn without_repetitions(problems: &mut Vec<Problem>) {
+    let mut seen = std::collections::HashSet::new();
+    problems.retain(|problem| {
+        let place = problem.place.as_ref().map(|place| (place.file.path().to_owned(), place.bytes.clone()));
+        seen.insert((problem.message.clone(), problem.subject.clone(), place))
+    });
+}

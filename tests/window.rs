@@ -1,0 +1,373 @@
+//! The window without a window: when pictures are drawn, and of what.
+
+#![allow(clippy::unwrap_used, reason = "a helper that cannot do its work fails the test")]
+
+use bevy_app::App;
+use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, pos2, vec2};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+use tyndall::components::{Phong, Shading};
+use tyndall::gpu::{Gpu, GpuOptions, Target, read_texture};
+use tyndall::report::Report;
+use tyndall::scene::SceneEntities;
+use tyndall::ui::{Log, OpenPanels, Totals};
+use tyndall::window::{Frame, Painter, Session, SessionOptions};
+use tyndall::{Comparison, Split, TyndallPlugins, View, render};
+
+const BALL: &str = r#"(
+    background: (0.1, 0.1, 0.1),
+    entities: {
+        "eye": ( ViewCamera: (eye: (0.0, 0.0, 4.0)) ),
+        "sun": ( DirectionalLight: (direction: (0.0, 0.0, -1.0), irradiance: (3.0, 3.0, 3.0)) ),
+        "ball": ( Mesh: Sphere(radius: 0.6, subdivisions: 3), Phong: (diffuse: (0.8, 0.0, 0.0)) ),
+    },
+)"#;
+
+const WAX: &str = r#"(
+    millimetres_per_unit: 10.0,
+    entities: {
+        "eye": ( ViewCamera: (eye: (0.0, 0.0, 4.0)) ),
+        "sun": ( DirectionalLight: (direction: (0.0, 0.0, -1.0), irradiance: (3.0, 3.0, 3.0)) ),
+        "ball": (
+            Mesh: Sphere(radius: 0.9, subdivisions: 3),
+            Subsurface: (material: Preset("wax"), local: (diffuse: (0.0, 0.0, 0.8))),
+            ScatteringMaps: (samples: 8),
+        ),
+    },
+)"#;
+
+/// A session on a texture.
+struct Screen {
+    session: Session,
+    painter: Painter,
+    target: Target,
+    gpu: Gpu,
+    started: Instant,
+    folder: tempfile::TempDir,
+}
+
+const SIZE: glam::UVec2 = glam::UVec2::new(640, 400);
+
+impl Screen {
+    fn new(scene: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.ron");
+        std::fs::write(&path, scene).unwrap();
+        let gpu =
+            pollster::block_on(Gpu::new(&GpuOptions::default())).unwrap_or_else(|error| panic!("{error}"));
+        let mut app = App::new();
+        app.add_plugins(TyndallPlugins).insert_resource(gpu.clone());
+        let document = render::load_scene(&mut app, &path, &[]);
+        // No room for panels: the picture is as large as the screen, but for the bars.
+        let none = OpenPanels { entities: false, inspector: false, report: false, log: false, axes: false };
+        app.insert_resource(none);
+        let screenshots = folder.path().to_owned();
+        let session =
+            Session::new(app, SessionOptions { scene: path, document, screenshots, ..Default::default() });
+        let format = wgpu::TextureFormat::Rgba8Unorm;
+        let target = Target::new(&gpu, "screen", SIZE, format).unwrap();
+        let painter = Painter::new(&gpu, format);
+        Self { session, painter, target, gpu, started: Instant::now(), folder }
+    }
+
+    /// A frame with these events, and how long until the next.
+    fn frame(&mut self, events: Vec<Event>) -> Option<Duration> {
+        let input = RawInput {
+            screen_rect: Some(egui::Rect::from_min_size(Pos2::ZERO, vec2(SIZE.x as f32, SIZE.y as f32))),
+            time: Some(self.started.elapsed().as_secs_f64()),
+            focused: true,
+            events,
+            ..Default::default()
+        };
+        let Frame { mut output, next, .. } = self.session.frame(input, self.painter.picture());
+        let target = (&self.target.view, SIZE.to_array());
+        let (context, picture) = (self.session.context(), self.session.picture());
+        self.painter.paint(&self.gpu, context, &mut output, picture, target);
+        next
+    }
+
+    /// Frames as long as any is due.
+    fn settle(&mut self) {
+        let deadline = Instant::now() + Duration::from_secs(60);
+        while let Some(wait) = self.frame(Vec::new()) {
+            assert!(Instant::now() < deadline, "it does not come to rest");
+            std::thread::sleep(wait);
+        }
+    }
+
+    fn scene(&self) -> PathBuf {
+        self.folder.path().join("scene.ron")
+    }
+
+    /// Writes the scene anew, and has it read.
+    fn write(&mut self, scene: &str) {
+        std::fs::write(self.scene(), scene).unwrap();
+        let deadline = Instant::now() + Duration::from_secs(10);
+        while !self.session.poll() {
+            assert!(Instant::now() < deadline, "the scene is not read again");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// The mean of the screen over a square of 8 pixels in the middle of what the picture shows, from its middle in its half heights.
+    fn colour(&self, x: f32, y: f32) -> [f32; 3] {
+        let pixels = read_texture(&self.gpu, &self.target.texture).unwrap();
+        let [width, height] = self.session.shown().room.map(|side| side as f32);
+        // The bar above is higher than the one below by what is left.
+        let (middle, below) = (width / 2.0, 22.0);
+        let centre = (middle + x * height / 2.0, SIZE.y as f32 - below - height / 2.0 - y * height / 2.0);
+        let mut sum = [0.0; 3];
+        for dy in 0..8 {
+            for dx in 0..8 {
+                let at = (centre.1 as usize - 4 + dy) * SIZE.x as usize + centre.0 as usize - 4 + dx;
+                for channel in 0..3 {
+                    sum[channel] += f32::from(pixels[4 * at + channel]) / 64.0;
+                }
+            }
+        }
+        sum
+    }
+
+    fn pictures(&self) -> u64 {
+        self.session.counts().1
+    }
+
+    fn drag(&mut self, by: egui::Vec2, held: impl Fn(&mut Self)) {
+        let from = pos2(320.0, 200.0);
+        let button = |pos, pressed| Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        self.frame(vec![Event::PointerMoved(from)]);
+        self.frame(vec![button(from, true)]);
+        for step in 1..=4 {
+            self.frame(vec![Event::PointerMoved(from + by * (step as f32 / 4.0))]);
+        }
+        held(self);
+        self.frame(vec![button(from + by, false)]);
+        self.frame(vec![Event::PointerGone]);
+    }
+}
+
+fn is_red([red, green, blue]: [f32; 3]) -> bool {
+    red > 100.0 && green < 60.0 && blue < 60.0
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn nothing_is_drawn_while_nothing_changes() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    assert!(is_red(screen.colour(0.0, 0.0)), "{:?}", screen.colour(0.0, 0.0));
+    let (frames, pictures) = screen.session.counts();
+    // No frame is due: nothing would ever call for one. Those that come anyway, as when the pointer crosses the window, draw no picture.
+    for step in 0..20 {
+        screen.frame(vec![Event::PointerMoved(pos2(20.0 * step as f32, 300.0))]);
+    }
+    screen.settle();
+    assert!(screen.session.counts().0 > frames);
+    assert_eq!(screen.pictures(), pictures);
+    // Nor does a file that is written as it was.
+    screen.write(BALL);
+    screen.settle();
+    assert_eq!(screen.pictures(), pictures);
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn what_changes_in_the_file_is_seen_and_what_is_broken_is_told() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    screen.write(&BALL.replace("(0.8, 0.0, 0.0)", "(0.0, 0.0, 0.8)"));
+    // The very next frame shows it.
+    screen.frame(Vec::new());
+    let [red, _, blue] = screen.colour(0.0, 0.0);
+    assert!(blue > 100.0 && red < 60.0, "{red} {blue}");
+    screen.settle();
+
+    screen.write("(entities: { \"ball\": ( Mesh: Spere() ) })");
+    screen.settle();
+    let [red, _, blue] = screen.colour(0.0, 0.0);
+    assert!(blue > 100.0 && red < 60.0, "the last good scene stays: {red} {blue}");
+    let told = screen.session.world().resource::<Log>().lines();
+    assert!(
+        told.iter().any(|line| line.text.contains("Spere") && line.text.contains("scene.ron:1:")),
+        "{told:?}"
+    );
+
+    screen.write(BALL);
+    screen.settle();
+    assert!(is_red(screen.colour(0.0, 0.0)));
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn edits_in_the_world_are_drawn_once() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    let ball = screen.session.world().resource::<SceneEntities>().0["ball"];
+    screen.session.world().get_mut::<Phong>(ball).unwrap().diffuse = glam::Vec3::new(0.0, 0.8, 0.0);
+    let before = screen.pictures();
+    screen.settle();
+    let [red, green, _] = screen.colour(0.0, 0.0);
+    assert!(green > 100.0 && red < 60.0, "{red} {green}");
+    // Coarsely, and in full; on a fast machine in full at once.
+    assert!((1..=2).contains(&(screen.pictures() - before)), "{}", screen.pictures() - before);
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn the_camera_is_turned_and_survives_reloads() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    let home = screen.session.world().resource::<View>().viewpoint;
+    screen.drag(vec2(90.0, 0.0), |_| {});
+    screen.settle();
+    let turned = screen.session.world().resource::<View>().viewpoint;
+    assert!(turned.eye.x < -0.5 && (turned.eye.length() - 4.0).abs() < 1e-9, "{turned:?}");
+    // The scene's own camera is as it was, and is not what one looks through.
+    screen.write(&BALL.replace("eye: (0.0, 0.0, 4.0)", "eye: (0.0, 3.0, 4.0)"));
+    screen.settle();
+    assert_eq!(screen.session.world().resource::<View>().viewpoint, turned);
+    let key = |key| Event::Key {
+        key,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    };
+    screen.frame(vec![key(egui::Key::Home)]);
+    screen.settle();
+    let reset = screen.session.world().resource::<View>().viewpoint;
+    assert_eq!((reset.eye.y, home.eye.y), (3.0, 0.0));
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn a_drag_draws_coarsely_where_it_must_and_in_full_when_it_ends() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    let full = screen.session.shown().clone();
+    assert_eq!((full.pixels, full.is_coarse), (full.room, false));
+    let is_software = screen.gpu.is_software();
+    screen.drag(vec2(40.0, 10.0), |screen| {
+        // It may have found that it can draw in full.
+        screen.frame(Vec::new());
+        let held = screen.session.shown().clone();
+        // Held still, nothing is drawn, and what is shown stays coarse.
+        let before = screen.pictures();
+        std::thread::sleep(Duration::from_millis(300));
+        screen.frame(Vec::new());
+        assert_eq!((screen.pictures(), screen.session.shown().is_coarse), (before, held.is_coarse));
+        assert!(held.is_coarse || !is_software || held.took < Duration::from_millis(70));
+    });
+    screen.settle();
+    let after = screen.session.shown();
+    assert_eq!((after.pixels, after.is_coarse), (after.room, false));
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn translucent_meshes_are_refined_until_that_is_done() {
+    let mut screen = Screen::new(WAX);
+    screen.settle();
+    let (done, wanted) = screen.session.shown().refined.unwrap();
+    assert!(done == wanted && done > 1, "{done} of {wanted}");
+    // Twice as many sets each time, not a picture a set; before that, a coarse one and a full one.
+    assert!(screen.pictures() <= 2 + u64::from(wanted.ilog2()), "{}", screen.pictures());
+    let computed = screen.session.world().resource::<Totals>().0["scattered_radiosity"];
+    screen.drag(vec2(30.0, 0.0), |_| {});
+    screen.settle();
+    assert_eq!(
+        screen.session.world().resource::<Totals>().0["scattered_radiosity"],
+        computed,
+        "a new view refines nothing"
+    );
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn a_comparison_shows_both_shadings_and_computes_nothing_twice() {
+    let mut screen = Screen::new(WAX);
+    screen.settle();
+    let scattered = screen.colour(0.5, 0.0);
+    let computed = screen.session.world().resource::<Totals>().0.clone();
+    let split = Split { at: 0.5, left: Shading::Local, right: Shading::Scattering };
+    screen.session.world().insert_resource(Comparison(Some(split)));
+    screen.settle();
+    let ([red, _, blue], right) = (screen.colour(-0.5, 0.0), screen.colour(0.5, 0.0));
+    assert!(blue > 80.0 && red < 60.0, "left is local: {red} {blue}");
+    assert!(
+        (0..3).all(|channel| (right[channel] - scattered[channel]).abs() < 1.0),
+        "{right:?} {scattered:?}"
+    );
+    let totals = &screen.session.world().resource::<Totals>().0;
+    for pass in ["scattered_radiosity", "light_gbuffer", "combine"] {
+        assert_eq!(totals[pass], computed[pass], "{pass}");
+    }
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn screenshots_are_of_the_full_picture() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    let key = |modifiers| Event::Key {
+        key: egui::Key::F12,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers,
+    };
+    screen.frame(vec![key(Modifiers::NONE)]);
+    screen.frame(vec![key(Modifiers::SHIFT)]);
+    let room = screen.session.shown().room;
+    let png = image::open(screen.folder.path().join("scene_0001.png")).unwrap().to_rgb8();
+    assert_eq!([png.width(), png.height()], room);
+    let [red, green, _] = png.get_pixel(room[0] / 2, room[1] / 2).0;
+    assert!(red > 100 && green < 60);
+    let exr = image::open(screen.folder.path().join("scene_0001.exr")).unwrap().to_rgb32f();
+    let radiance = exr.get_pixel(room[0] / 2, room[1] / 2).0;
+    assert!((radiance[0] - 0.8 * 3.0 / std::f32::consts::PI).abs() < 0.02, "{radiance:?}");
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn any_size_of_window_is_drawn() {
+    let mut screen = Screen::new(WAX);
+    for (width, height) in [(1.0, 1.0), (3.0, 2000.0), (640.0, 1.0), (640.0, 400.0)] {
+        let input = RawInput {
+            screen_rect: Some(egui::Rect::from_min_size(Pos2::ZERO, vec2(width, height))),
+            time: Some(screen.started.elapsed().as_secs_f64()),
+            ..Default::default()
+        };
+        let mut frame = screen.session.frame(input, screen.painter.picture());
+        screen.painter.skip(&screen.gpu, &mut frame.output);
+        assert_eq!(screen.session.shown().failure, None);
+        assert!(screen.session.shown().pixels.iter().all(|side| *side > 0));
+    }
+    screen.settle();
+    assert!(screen.colour(0.0, 0.0)[0] > 60.0, "{:?}", screen.colour(0.0, 0.0));
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn a_hundred_edits_leave_nothing_behind() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    let mut bytes = None;
+    for turn in 0..100 {
+        screen.write(&BALL.replace("0.8, 0.0, 0.0", &format!("0.8, {:.3}, 0.0", 0.001 * f64::from(turn))));
+        screen.frame(Vec::new());
+        if turn == 10 {
+            screen.settle();
+            bytes = Some(screen.session.world().resource::<Report>().gpu_bytes.clone());
+        }
+    }
+    screen.settle();
+    let report = screen.session.world().resource::<Report>();
+    assert_eq!(Some(&report.gpu_bytes), bytes.as_ref());
+    assert!(report.timeline.len() < 10 && report.pipelines.len() < 10, "{report:?}");
+}
