@@ -8,6 +8,7 @@
 //! at once ([`Problem`]), each with its place in the text.
 
 mod advice;
+mod component_file;
 mod document;
 mod edit;
 mod names;
@@ -19,6 +20,7 @@ mod references;
 mod tokens;
 mod wanted;
 
+pub use component_file::read_component;
 pub use document::{Override, SceneComponent, SceneDocument, SceneEntity};
 pub use names::nearest;
 pub use problem::{Place, Problem, Problems, Severity, SourceFile};
