@@ -85,6 +85,7 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod sources;
+pub mod ui;
 mod view;
 pub use app::{SceneTime, Stage, TyndallPlugins};
 pub use passes::light_gbuffer::LightTexels;

@@ -1,0 +1,13 @@
+//! Panels: widgets on plain data that know neither window nor GPU, and say what a person changed.
+
+mod colour;
+mod edited;
+mod icons;
+mod inspector;
+mod light_direction;
+mod number;
+mod rows;
+
+pub use edited::{EditError, Edited};
+pub use inspector::{InspectorContext, inspect};
+pub use light_direction::{LightDirection, light_direction};
