@@ -7,7 +7,12 @@ mod inspector;
 mod light_direction;
 mod number;
 mod rows;
+mod transfer_function;
 
 pub use edited::{EditError, Edited};
 pub use inspector::{InspectorContext, inspect};
 pub use light_direction::{LightDirection, light_direction};
+pub use transfer_function::{
+    Preset, TransferFunctionData, TransferFunctionEditor, TransferFunctionFileError, read_transfer_function,
+    write_transfer_function,
+};
