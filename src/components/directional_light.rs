@@ -1,4 +1,4 @@
-use super::{Range, Validate, attributes::ReflectValidate};
+use super::{Direction, Range, Rgb, Validate, attributes::ReflectValidate};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::Vec3;
@@ -20,9 +20,10 @@ use glam::Vec3;
 #[reflect(Component, Default, PartialEq, Validate)]
 pub struct DirectionalLight {
     /// The direction in which the light travels.
+    #[reflect(@Direction)]
     pub direction: Vec3,
     /// Irradiance on a surface facing the light.
-    #[reflect(@Range::non_negative())]
+    #[reflect(@Range::non_negative(), @Rgb::Colour)]
     pub irradiance: Vec3,
 }
 

@@ -2,7 +2,8 @@
 //!
 //! Every type here is reflected, so it is written in RON by its short name with its fields (`Phong: (shininess: 60.0)`), is validated by
 //! the attributes on its fields ([`Range`], [`Names`], [`NameOf`]) and, where fields depend on each other, by [`Validate`]. Fields that are left out
-//! take the values of the type's `Default`.
+//! take the values of the type's `Default`. What only an inspector wants to know stands beside those: [`Unit`], [`Slider`], [`Rgb`], [`Direction`],
+//! [`Label`], [`ChooseVariant`], and the documentation of each field, which is its tooltip.
 
 mod asset_path;
 mod attributes;
@@ -10,6 +11,7 @@ mod auto;
 mod directional_light;
 mod mesh;
 mod phong;
+mod presentation;
 mod ray_cast;
 mod scattering_camera;
 mod scattering_maps;
@@ -28,6 +30,7 @@ pub use auto::Auto;
 pub use directional_light::DirectionalLight;
 pub use mesh::Mesh;
 pub use phong::Phong;
+pub use presentation::{ChooseVariant, Direction, Label, ReflectChooseVariant, Rgb, Slider};
 pub use ray_cast::RayCast;
 pub(crate) use scattering_camera::aim;
 pub use scattering_camera::{ScatteringCamera, ScatteringCameraOf, ScatteringCameras};

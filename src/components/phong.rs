@@ -1,4 +1,4 @@
-use super::Range;
+use super::{Range, Rgb, Slider};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::Vec3;
@@ -23,16 +23,16 @@ use glam::Vec3;
 #[reflect(Component, Default, PartialEq)]
 pub struct Phong {
     /// Radiance without any light.
-    #[reflect(@Range::non_negative())]
+    #[reflect(@Range::non_negative(), @Rgb::Colour)]
     pub ambient: Vec3,
     /// Albedo of the diffuse part.
-    #[reflect(@Range::new(0.0, 1.0))]
+    #[reflect(@Range::new(0.0, 1.0), @Rgb::Colour)]
     pub diffuse: Vec3,
     /// Strength of the specular part.
-    #[reflect(@Range::new(0.0, 1.0))]
+    #[reflect(@Range::new(0.0, 1.0), @Rgb::Colour)]
     pub specular: Vec3,
     /// Blinn's exponent.
-    #[reflect(@Range::new(0.0, 10_000.0))]
+    #[reflect(@Range::new(0.0, 10_000.0), @Slider::logarithmic(1.0, 10_000.0))]
     pub shininess: f32,
 }
 

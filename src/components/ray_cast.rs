@@ -1,4 +1,4 @@
-use super::{Range, Unit};
+use super::{Range, Slider, Unit};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -19,7 +19,7 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 #[reflect(Component, Default, PartialEq)]
 pub struct RayCast {
     /// Distance of the samples.
-    #[reflect(@Range::new(0.01, 100.0), @Unit("voxels"))]
+    #[reflect(@Range::new(0.01, 100.0), @Slider::logarithmic(0.1, 10.0), @Unit("voxels"))]
     pub step: f32,
     /// The opacity at which a ray is taken to be at its end.
     #[reflect(@Range::new(0.0, 1.0))]

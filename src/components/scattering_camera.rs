@@ -1,4 +1,4 @@
-use super::{NameOf, Required, Subsurface, Validate, attributes::ReflectValidate};
+use super::{Direction, NameOf, Required, Subsurface, Validate, attributes::ReflectValidate};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::Vec3;
@@ -25,6 +25,7 @@ pub struct ScatteringCamera {
     #[reflect(@Required, @NameOf("Subsurface"))]
     pub target: String,
     /// The direction in which the camera looks.
+    #[reflect(@Direction)]
     pub direction: Vec3,
 }
 

@@ -1,4 +1,4 @@
-use super::{Auto, Range, Unit, Validate, attributes::ReflectValidate};
+use super::{Auto, Label, Range, Slider, Unit, Validate, attributes::ReflectValidate};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -49,10 +49,10 @@ pub struct ScatteringMaps {
     #[reflect(@Range::new(0.0, 64.0))]
     pub cameras: u32,
     /// Points of the light per point of the surface.
-    #[reflect(@Range::new(1.0, 1024.0))]
+    #[reflect(@Range::new(1.0, 1024.0), @Slider::logarithmic(1.0, 1024.0))]
     pub samples: u32,
     /// Points of the light of which the nearest are used.
-    #[reflect(@Range::new(1.0, 4096.0))]
+    #[reflect(@Range::new(1.0, 4096.0), @Slider::logarithmic(1.0, 4096.0))]
     pub candidates: Auto<u32>,
     /// Texels of each camera's map.
     pub resolution: MapResolution,
@@ -114,7 +114,14 @@ pub enum MapResolution {
     #[default]
     Auto,
     /// Across and down.
-    Texels(#[reflect(@Range::new(1.0, 4096.0))] u32, #[reflect(@Range::new(1.0, 4096.0))] u32),
+    Texels(
+        /// Texels from left to right.
+        #[reflect(@Range::new(1.0, 4096.0), @Slider::logarithmic(16.0, 4096.0), @Label("across"), @Unit("texels"))]
+        u32,
+        /// Texels from top to bottom.
+        #[reflect(@Range::new(1.0, 4096.0), @Slider::logarithmic(16.0, 4096.0), @Label("down"), @Unit("texels"))]
+        u32,
+    ),
 }
 
 /// How far samples lie from the point that they are for.
@@ -125,5 +132,7 @@ pub enum SampleRadius {
     #[default]
     Auto,
     /// This far.
-    Millimetres(#[reflect(@Range::positive(), @Unit("mm"))] f32),
+    Millimetres(
+        #[reflect(@Range::positive(), @Slider::logarithmic(0.01, 100.0), @Label("radius"), @Unit("mm"))] f32,
+    ),
 }

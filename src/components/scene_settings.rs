@@ -1,4 +1,4 @@
-use super::{Range, Shading, Unit};
+use super::{Range, Rgb, Shading, Slider, Unit};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::Vec3;
@@ -18,10 +18,10 @@ use glam::Vec3;
 #[reflect(Default, PartialEq)]
 pub struct SceneSettings {
     /// How long a scene unit is.
-    #[reflect(@Range::new(1e-9, 1e9), @Unit("mm"))]
+    #[reflect(@Range::new(1e-9, 1e9), @Slider::logarithmic(1e-3, 1e3), @Unit("mm"))]
     pub millimetres_per_unit: f32,
     /// Radiance where a ray meets nothing.
-    #[reflect(@Range::non_negative())]
+    #[reflect(@Range::non_negative(), @Rgb::Colour)]
     pub background: Vec3,
     /// The shading of entities that say nothing of their own.
     pub shading: Shading,

@@ -1,4 +1,7 @@
-use super::{Names, Phong, Range, ScatteringMaps, Unit, Validate, attributes::ReflectValidate};
+use super::{
+    ChooseVariant, Names, Phong, Range, ReflectChooseVariant, Rgb, ScatteringMaps, Slider, Unit, Validate,
+    attributes::ReflectValidate,
+};
 use crate::optics::{materials, medium::Medium};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -55,29 +58,29 @@ pub struct Subsurface {
 /// A custom medium is written with `sigma_a` and `sigma_s`, or with `sigma_t` and `albedo`; both of the one pair and none of the other.
 /// The millimetre is the scene's: [`SceneSettings::millimetres_per_unit`](super::SceneSettings) says how many make a unit.
 #[derive(Reflect, Clone, Debug, PartialEq)]
-#[reflect(Default, PartialEq, Validate)]
+#[reflect(Default, PartialEq, Validate, ChooseVariant)]
 pub enum Material {
     /// One of [`materials::MEDIA`], by name.
     Preset(#[reflect(@Names { of: "medium", known: &materials::NAMES })] String),
     /// By its coefficients: `sigma_a` and `sigma_s`, or `sigma_t` and `albedo`.
     Custom {
         /// Absorption.
-        #[reflect(default, @Range::new(0.0, 1e12), @Unit("per mm"))]
+        #[reflect(default, @Range::new(0.0, 1e12), @Slider::logarithmic(1e-4, 1e3), @Unit("per mm"), @Rgb::Coefficients)]
         sigma_a: Option<Vec3>,
         /// Scattering, not reduced.
-        #[reflect(default, @Range::new(0.0, 1e12), @Unit("per mm"))]
+        #[reflect(default, @Range::new(0.0, 1e12), @Slider::logarithmic(1e-4, 1e3), @Unit("per mm"), @Rgb::Coefficients)]
         sigma_s: Option<Vec3>,
         /// Extinction, which is absorption and scattering together.
-        #[reflect(default, @Range::new(0.0, 1e12), @Unit("per mm"))]
+        #[reflect(default, @Range::new(0.0, 1e12), @Slider::logarithmic(1e-4, 1e3), @Unit("per mm"), @Rgb::Coefficients)]
         sigma_t: Option<Vec3>,
         /// The share of the extinction that is scattering.
-        #[reflect(default, @Range::new(0.0, 1.0))]
+        #[reflect(default, @Range::new(0.0, 1.0), @Rgb::Colour)]
         albedo: Option<Vec3>,
         /// Mean cosine of the scattering angle.
         #[reflect(default, @Range::new(-0.999, 0.999))]
         g: f32,
         /// Index of refraction relative to the outside.
-        #[reflect(default = "eta", @Range::new(0.5, 3.0))]
+        #[reflect(default = "eta", @Range::new(0.5, 3.0), @Slider::linear(1.0, 2.0))]
         eta: f32,
     },
 }
@@ -140,6 +143,23 @@ impl Validate for Material {
     }
 }
 
+/// A medium by name becomes custom with the coefficients that it has, since a custom one without any is none.
+impl ChooseVariant for Material {
+    fn chosen(&self, variant: &str) -> Option<Box<dyn Reflect>> {
+        let [red, green, blue] = self.coefficients().filter(|_| variant == "Custom")?;
+        let each =
+            |of: fn(&Medium) -> f64| Some(Vec3::from([&red, &green, &blue].map(|medium| of(medium) as f32)));
+        Some(Box::new(Self::Custom {
+            sigma_a: each(|medium| medium.sigma_a),
+            sigma_s: each(|medium| medium.sigma_s),
+            sigma_t: None,
+            albedo: None,
+            g: red.g as f32,
+            eta: red.eta as f32,
+        }))
+    }
+}
+
 fn eta() -> f32 {
     1.3
 }
@@ -182,7 +202,7 @@ pub struct Specular {
     #[reflect(@Range::new(0.0, 1.0))]
     pub strength: f32,
     /// Blinn's exponent.
-    #[reflect(@Range::new(0.0, 10_000.0))]
+    #[reflect(@Range::new(0.0, 10_000.0), @Slider::logarithmic(1.0, 10_000.0))]
     pub shininess: f32,
 }
 

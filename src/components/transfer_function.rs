@@ -1,5 +1,5 @@
 use super::{
-    Auto, Range, Unit, Validate,
+    Auto, Label, Range, Rgb, Slider, Unit, Validate,
     attributes::{ReflectValidate, in_ron},
 };
 use bevy_ecs::prelude::*;
@@ -55,18 +55,19 @@ use glam::{Vec2, Vec3};
 #[reflect(Component, Default, PartialEq, Validate)]
 pub struct TransferFunction {
     /// The data values at positions 0 and 1.
+    #[reflect(@Unit("data values"))]
     pub domain: Auto<Vec2>,
     /// Colour and opacity at some positions.
     pub points: Vec<ControlPoint>,
     /// Level sets shown on top.
     pub iso: Vec<IsoValue>,
     /// Entries of the lookup table.
-    #[reflect(@Range::new(2.0, 8192.0))]
+    #[reflect(@Range::new(2.0, 8192.0), @Slider::logarithmic(16.0, 8192.0))]
     pub entries: u32,
     /// When the function is applied.
     pub classification: Classification,
     /// The thickness over which an opacity holds.
-    #[reflect(@Range::positive(), @Unit("mm"))]
+    #[reflect(@Range::positive(), @Slider::logarithmic(1e-3, 1e3), @Unit("mm"))]
     pub opacity_length: Auto<f32>,
 }
 
@@ -138,9 +139,15 @@ impl Validate for TransferFunction {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Default, PartialEq)]
 pub struct ControlPoint(
-    #[reflect(@Range::new(0.0, 1.0))] pub f32,
-    #[reflect(@Range::non_negative())] pub Vec3,
-    #[reflect(@Range::new(0.0, 1.0))] pub f32,
+    /// Place in the domain, from its lower end to its upper.
+    #[reflect(@Range::new(0.0, 1.0), @Label("position"))]
+    pub f32,
+    /// Emitted radiance at full opacity.
+    #[reflect(@Range::non_negative(), @Rgb::Colour, @Label("colour"))]
+    pub Vec3,
+    /// The share of the light that a slab of `opacity_length` absorbs.
+    #[reflect(@Range::new(0.0, 1.0), @Label("opacity"))]
+    pub f32,
 );
 
 /// A level set of the field, shown as a thin layer.
@@ -154,10 +161,10 @@ pub struct IsoValue {
     #[reflect(@Range::non_negative(), @Unit("data values"))]
     pub width: f32,
     /// Emitted radiance at full opacity.
-    #[reflect(@Range::non_negative())]
+    #[reflect(@Range::non_negative(), @Rgb::Colour)]
     pub color: Vec3,
     /// Peak optical depth over `opacity_length`; of a surface of width 0, that of each crossing.
-    #[reflect(@Range::non_negative())]
+    #[reflect(@Range::non_negative(), @Slider::logarithmic(0.01, 100.0), @Unit("optical depth"))]
     pub absorption: f32,
 }
 

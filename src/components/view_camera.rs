@@ -1,5 +1,5 @@
 use super::{
-    Range, Unit, Validate,
+    Range, Slider, Unit, Validate,
     attributes::{ReflectValidate, in_ron},
 };
 use crate::components::Placement;
@@ -39,10 +39,10 @@ pub struct ViewCamera {
     /// How the scene is projected.
     pub projection: Projection,
     /// Exposure value.
-    #[reflect(@Range::new(-100.0, 100.0), @Unit("EV"))]
+    #[reflect(@Range::new(-100.0, 100.0), @Slider::linear(-8.0, 8.0), @Unit("EV"))]
     pub exposure: f32,
     /// Encoding exponent.
-    #[reflect(@Range::new(0.1, 10.0))]
+    #[reflect(@Range::new(0.1, 10.0), @Slider::linear(1.0, 3.0))]
     pub gamma: f32,
 }
 
@@ -91,7 +91,7 @@ pub enum Projection {
     /// Rays leave the eye in all directions.
     Perspective {
         /// Angle between the bottom and the top of the picture.
-        #[reflect(default = "default_vertical_fov", @Range::new(0.01, 179.0), @Unit("degrees"))]
+        #[reflect(default = "default_vertical_fov", @Range::new(0.01, 179.0), @Slider::linear(5.0, 120.0), @Unit("degrees"))]
         vertical_fov: f32,
     },
     /// Rays are parallel and start in the plane through the eye.

@@ -1,4 +1,4 @@
-use super::{Auto, Range, Unit};
+use super::{Auto, Range, Slider, Unit};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -51,16 +51,16 @@ pub enum VolumeLighting {
     /// Blinn-Phong with the gradient for a normal.
     Gradient {
         /// Share without light.
-        #[reflect(default = "ambient", @Range::non_negative())]
+        #[reflect(default = "ambient", @Range::non_negative(), @Slider::linear(0.0, 1.0))]
         ambient: f32,
         /// Lambert's share.
-        #[reflect(default = "diffuse", @Range::non_negative())]
+        #[reflect(default = "diffuse", @Range::non_negative(), @Slider::linear(0.0, 1.0))]
         diffuse: f32,
         /// Strength of the highlight.
-        #[reflect(default = "specular", @Range::non_negative())]
+        #[reflect(default = "specular", @Range::non_negative(), @Slider::linear(0.0, 1.0))]
         specular: f32,
         /// Blinn's exponent.
-        #[reflect(default = "shininess", @Range::new(0.0, 10_000.0))]
+        #[reflect(default = "shininess", @Range::new(0.0, 10_000.0), @Slider::logarithmic(1.0, 10_000.0))]
         shininess: f32,
     },
     /// Light that was scattered once.
@@ -69,7 +69,7 @@ pub enum VolumeLighting {
         #[reflect(default, @Range::new(-0.999, 0.999))]
         g: f32,
         /// Nodes per voxel along each axis.
-        #[reflect(default = "full", @Range::new(0.125, 1.0))]
+        #[reflect(default = "full", @Range::new(0.125, 1.0), @Unit("nodes per voxel"))]
         resolution: f32,
     },
     /// Light that was scattered, however often.
@@ -78,7 +78,7 @@ pub enum VolumeLighting {
         #[reflect(default, @Range::new(1.0, 89.0), @Unit("degrees"))]
         cone_angle: Auto<f32>,
         /// Nodes per voxel along each axis.
-        #[reflect(default = "full", @Range::new(0.125, 1.0))]
+        #[reflect(default = "full", @Range::new(0.125, 1.0), @Unit("nodes per voxel"))]
         resolution: f32,
         /// Whether all faces count through which light enters a cell, not only those across its nearest axis.
         #[reflect(default = "yes")]
@@ -87,10 +87,10 @@ pub enum VolumeLighting {
         #[reflect(default)]
         towards_eye: bool,
         /// Strength of the highlight.
-        #[reflect(default, @Range::non_negative())]
+        #[reflect(default, @Range::non_negative(), @Slider::linear(0.0, 1.0))]
         gradient_specular: f32,
         /// Share of the colour that is emitted.
-        #[reflect(default, @Range::non_negative())]
+        #[reflect(default, @Range::non_negative(), @Slider::linear(0.0, 1.0))]
         emission: f32,
         /// Mean cosine of scattering.
         #[reflect(default, @Range::new(-0.999, 0.999))]

@@ -191,8 +191,8 @@ fn tent(distance: f64, width: f64) -> f64 {
     (1.0 - distance.abs() / width).max(0.0)
 }
 
-/// Linear between points, constant beyond the first and last.
-fn interpolate(points: &[ControlPoint], position: f64) -> (DVec3, f64) {
+/// Colour and opacity at a position 0..1: linear between points, constant beyond the first and last; nothing where there are none.
+pub fn interpolate(points: &[ControlPoint], position: f64) -> (DVec3, f64) {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return (DVec3::ZERO, 0.0) };
     let at = |point: &ControlPoint| (point.1.as_dvec3(), f64::from(point.2));
     if position <= f64::from(first.0) {

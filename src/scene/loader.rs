@@ -402,7 +402,7 @@ impl<'a> Loader<'a> {
 /// A scene is written by hand; what is larger is not one.
 const MAX_SCENE_BYTES: u64 = 64 << 20;
 
-fn read_text(path: &Path) -> Result<Arc<SourceFile>, Box<Problem>> {
+pub(super) fn read_text(path: &Path) -> Result<Arc<SourceFile>, Box<Problem>> {
     use std::io::Read;
     let unreadable = |error: std::io::Error| {
         Box::new(match error.kind() {

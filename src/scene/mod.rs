@@ -8,6 +8,7 @@
 //! at once ([`Problem`]), each with its place in the text.
 
 mod advice;
+mod component_file;
 mod document;
 mod edit;
 mod frame;
@@ -23,6 +24,7 @@ mod tokens;
 mod wanted;
 mod watch;
 
+pub use component_file::read_component;
 pub use document::{Override, SceneComponent, SceneDocument, SceneEntity};
 pub use names::nearest;
 pub use problem::{EntityProblems, Place, Problem, Problems, Severity, SourceFile};

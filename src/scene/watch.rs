@@ -5,7 +5,7 @@
 //! files touched are compared with what they held when they were read, and only those that hold something else are told of. Once a
 //! second files are looked at in any case, since not every file system tells (network shares; folders above that are moved).
 //!
-//! `notify-debouncer-full` was tried for the middle part: it wakes up every few milliseconds for ever, hands out a burst of saves in a piece
+//! `notify-debouncer-full` was looked at for the middle part: it wakes up every few milliseconds for ever, hands out a burst of saves in a piece
 //! at each of these, and follows renames, which comparing by path makes needless.
 
 mod ledger;
