@@ -7,10 +7,11 @@ use bevy_app::App;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, pos2, vec2};
 use std::time::Instant;
+use tyndall::TyndallPlugins;
 use tyndall::gpu::{Gpu, GpuOptions, Target};
+use tyndall::scene::LiveScene;
 use tyndall::ui::OpenPanels;
 use tyndall::window::{Painter, Session, SessionOptions};
-use tyndall::{TyndallPlugins, render};
 
 /// Pixels of the picture when it is drawn in full.
 const ROOM: [u32; 2] = [960, 540];
@@ -28,10 +29,10 @@ impl Screen {
         let gpu = pollster::block_on(Gpu::new(&GpuOptions::default())).expect("an adapter");
         let mut app = App::new();
         app.add_plugins(TyndallPlugins).insert_resource(gpu.clone());
-        let document = render::load_scene(&mut app, scene.as_ref(), &[]);
-        assert!(!document.has_errors(), "{:#?}", document.problems);
+        let scene = LiveScene::open(&mut app, scene.as_ref(), &[]);
+        assert!(!scene.is_refused(), "{:#?}", scene.problems(app.world()));
         app.insert_resource(OpenPanels { entities: false, inspector: false, ..OpenPanels::default() });
-        let options = SessionOptions { scene: scene.into(), document, ..SessionOptions::default() };
+        let options = SessionOptions { scene, camera: None, screenshots: ".".into(), tell: None };
         let format = wgpu::TextureFormat::Rgba8Unorm;
         let target = Target::new(&gpu, "screen", glam::UVec2::from(ROOM), format).expect("a target");
         let painter = Painter::new(&gpu, format);

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use tyndall::components::{Phong, Shading};
 use tyndall::gpu::{Gpu, GpuOptions, Target, read_texture};
 use tyndall::report::Report;
-use tyndall::scene::SceneEntities;
+use tyndall::scene::{LiveScene, SceneEntities};
 use tyndall::ui::{Log, OpenPanels, Totals};
 use tyndall::window::{Frame, Painter, Session, SessionOptions};
 use tyndall::{Comparison, Split, TyndallPlugins, View, render};
@@ -57,13 +57,12 @@ impl Screen {
             pollster::block_on(Gpu::new(&GpuOptions::default())).unwrap_or_else(|error| panic!("{error}"));
         let mut app = App::new();
         app.add_plugins(TyndallPlugins).insert_resource(gpu.clone());
-        let document = render::load_scene(&mut app, &path, &[]);
+        let scene = LiveScene::open(&mut app, &path, &[]);
         // No room for panels: the picture is as large as the screen, but for the bars.
         let none = OpenPanels { entities: false, inspector: false, report: false, log: false, axes: false };
         app.insert_resource(none);
         let screenshots = folder.path().to_owned();
-        let session =
-            Session::new(app, SessionOptions { scene: path, document, screenshots, ..Default::default() });
+        let session = Session::new(app, SessionOptions { scene, camera: None, screenshots, tell: None });
         let format = wgpu::TextureFormat::Rgba8Unorm;
         let target = Target::new(&gpu, "screen", SIZE, format).unwrap();
         let painter = Painter::new(&gpu, format);

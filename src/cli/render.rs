@@ -73,15 +73,15 @@ fn check_document(app: &mut App, document: &SceneDocument) -> Result<(), Failure
         return Ok(());
     }
     exit::print(&render::all_problems(app, document));
-    Err(check_overrides(document).err().unwrap_or(Failure::Input))
+    Err(check_overrides(&document.problems).err().unwrap_or(Failure::Input))
 }
 
 /// Whether every `--set` names something that the scene has.
-pub(super) fn check_overrides(document: &SceneDocument) -> Result<(), Failure> {
+pub(super) fn check_overrides(problems: &[Problem]) -> Result<(), Failure> {
     let from_command_line = |problem: &Problem| {
         problem.place.as_ref().is_some_and(|place| place.file.path() == Path::new("--set"))
     };
-    if document.problems.iter().any(from_command_line) {
+    if problems.iter().any(from_command_line) {
         return Err(Failure::Usage("a `--set` names what the scene does not have; nothing was drawn".into()));
     }
     Ok(())

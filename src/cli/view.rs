@@ -4,27 +4,26 @@ use super::arguments::ViewArguments;
 use super::exit::{self, Failure};
 use super::render::{check_camera, check_overrides};
 use crate::gpu::GpuOptions;
-use crate::render;
+use crate::scene::LiveScene;
 use crate::window::{self, SessionOptions, WindowOptions};
 use bevy_app::App;
 
 pub(super) fn run(mut app: App, arguments: &ViewArguments) -> Result<(), Failure> {
-    let document = render::load_scene(&mut app, &arguments.scene, &arguments.overrides);
-    if document.has_errors() {
+    let scene = LiveScene::open(&mut app, &arguments.scene, &arguments.overrides);
+    let problems = scene.problems(app.world());
+    if scene.is_refused() {
         // What is wrong in the files is told in the window, where one sees it mended; what is wrong here can only be mended here.
         let at_fault =
-            check_overrides(&document).err().or((!arguments.scene.is_file()).then_some(Failure::Input));
+            check_overrides(&problems).err().or((!arguments.scene.is_file()).then_some(Failure::Input));
         if let Some(failure) = at_fault {
-            exit::print(&render::problems(app.world(), &document));
+            exit::print(&problems);
             return Err(failure);
         }
     } else {
         check_camera(app.world_mut(), arguments.camera.as_deref())?;
     }
     let session = SessionOptions {
-        scene: arguments.scene.clone(),
-        overrides: arguments.overrides.clone(),
-        document,
+        scene,
         camera: arguments.camera.clone(),
         screenshots: ".".into(),
         tell: Some(exit::print),

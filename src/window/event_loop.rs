@@ -17,7 +17,6 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy}
 use winit::window::{Window, WindowId};
 
 /// How a window is opened.
-#[derive(Default)]
 pub struct WindowOptions {
     /// Pixels across and down; else as large as when it was last closed.
     pub size: Option<UVec2>,
@@ -54,6 +53,8 @@ fn event_loop() -> Result<EventLoop<Wake>, WindowError> {
 /// What wakes the loop besides events of the window.
 enum Wake {
     AccessKit(accesskit_winit::Event),
+    /// Files of the scene have changed.
+    Files,
 }
 
 impl From<accesskit_winit::Event> for Wake {
@@ -79,8 +80,6 @@ struct Open {
     session: Session,
     /// When the next frame is due, if nothing happens before.
     due: Option<Instant>,
-    /// When files are looked at next.
-    polls: Instant,
     /// Frames in a row that could not be shown.
     failed: u32,
 }
@@ -116,8 +115,14 @@ impl ApplicationHandler<Wake> for Program {
         }
     }
 
-    fn user_event(&mut self, _: &ActiveEventLoop, Wake::AccessKit(event): Wake) {
+    fn user_event(&mut self, _: &ActiveEventLoop, wake: Wake) {
         let Some(open) = &mut self.open else { return };
+        let Wake::AccessKit(event) = wake else {
+            if open.session.poll() {
+                open.window.request_redraw();
+            }
+            return;
+        };
         match event.window_event {
             accesskit_winit::WindowEvent::InitialTreeRequested => open.session.context().enable_accesskit(),
             accesskit_winit::WindowEvent::ActionRequested(request) => {
@@ -133,18 +138,11 @@ impl ApplicationHandler<Wake> for Program {
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
         let Some(open) = &mut self.open else { return };
         let now = Instant::now();
-        if now >= open.polls {
-            open.polls = now + open.session.poll_interval();
-            if open.session.poll() {
-                open.window.request_redraw();
-            }
-        }
         if open.due.is_some_and(|due| due <= now) {
             open.due = None;
             open.window.request_redraw();
         }
-        let until = open.due.map_or(open.polls, |due| due.min(open.polls));
-        events.set_control_flow(ControlFlow::WaitUntil(until));
+        events.set_control_flow(open.due.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
@@ -191,22 +189,15 @@ impl Open {
             window.theme(),
             Some(gpu.device.limits().max_texture_dimension_2d as usize),
         );
+        let files = proxy.clone();
+        // An event loop that has ended wants to know of nothing.
+        session.on_change(Box::new(move || _ = files.send_event(Wake::Files)));
         // Readers of screens must be there before the window is.
         state.init_accesskit(events, &window, proxy);
         window.set_visible(true);
         window.request_redraw();
         let painter = surface.painter(&gpu);
-        Ok(Self {
-            window,
-            surface,
-            painter,
-            gpu,
-            state,
-            session,
-            due: None,
-            polls: Instant::now(),
-            failed: 0,
-        })
+        Ok(Self { window, surface, painter, gpu, state, session, due: None, failed: 0 })
     }
 
     /// Shows a frame, and says whether it was the last.
@@ -284,7 +275,7 @@ fn attributes(
     options: &WindowOptions,
     remembered: &Remembered,
 ) -> winit::window::WindowAttributes {
-    let name = options.session.scene.file_name().unwrap_or_default().to_string_lossy();
+    let name = options.session.scene.path().file_name().unwrap_or_default().to_string_lossy();
     let asked = options.size.map(|size| PhysicalSize::new(size.x, size.y));
     let before = remembered.size.map(|(width, height)| PhysicalSize::new(width, height));
     let attributes = Window::default_attributes()

@@ -2,31 +2,27 @@
 
 mod draw;
 
-use super::files::{self, Files, told};
+use super::files::{self, told};
 use super::orbit::Orbit;
 use super::pace::Pace;
 use super::stale::Drawn;
 use crate::gpu::Gpu;
 use crate::passes::tonemap::Tonemap;
-use crate::scene::{Override, Problem, Problems, SceneDocument};
+use crate::scene::{LiveScene, Problem, Reload};
 use crate::ui::{self, Command, Laid, Level, Log, PictureFile, Shown};
 use crate::view::{FreeCamera, Picture, SceneBounds, View, bounds_of};
 use bevy_app::App;
 use bevy_ecs::prelude::*;
 use egui::{FullOutput, RawInput, TextureId, ViewportId};
 use glam::UVec2;
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// What a session shows.
-#[derive(Default)]
 pub struct SessionOptions {
-    /// The scene.
-    pub scene: PathBuf,
-    /// Values of it that are replaced.
-    pub overrides: Vec<Override>,
-    /// What its files say, as it has been read into the app.
-    pub document: SceneDocument,
+    /// The scene, as it has been read into the app.
+    pub scene: LiveScene,
     /// The camera to begin with; the first by name where none is said.
     pub camera: Option<String>,
     /// Where screenshots go.
@@ -39,9 +35,9 @@ pub struct SessionOptions {
 pub struct Session {
     app: App,
     context: egui::Context,
-    files: Files,
-    /// How many of the problems have been told, and to whom besides the panels.
-    told: usize,
+    scene: LiveScene,
+    /// The problems that have been told, and to whom besides the panels.
+    told: HashSet<String>,
     tell: Option<fn(&[Problem])>,
     log: Log,
     screenshots: PathBuf,
@@ -74,7 +70,7 @@ pub struct Frame {
 impl Session {
     /// Takes over an app into which the scene has been read and which has a [`Gpu`].
     pub fn new(mut app: App, options: SessionOptions) -> Self {
-        let SessionOptions { scene, overrides, document, camera, screenshots, tell } = options;
+        let SessionOptions { scene, camera, screenshots, tell } = options;
         ui::init(app.world_mut());
         app.insert_resource(Picture { camera, ..Default::default() });
         let gpu = app.world().resource::<Gpu>();
@@ -91,8 +87,8 @@ impl Session {
         let mut session = Self {
             app,
             context,
-            files: Files::new(scene, overrides, document),
-            told: 0,
+            scene,
+            told: HashSet::new(),
             tell,
             log,
             screenshots,
@@ -138,22 +134,23 @@ impl Session {
 
     /// Reads the scene again if its files have changed, and says whether it did. Asks for no picture itself: [`Self::frame`] does if one is due.
     pub fn poll(&mut self) -> bool {
-        if !self.files.poll(&mut self.app) {
-            return false;
+        match self.scene.poll(&mut self.app) {
+            Reload::Nothing => return false,
+            Reload::Refused { .. } => {
+                self.log.tell(Level::Error, "the scene has errors; the last good one is shown");
+            }
+            Reload::Reloaded { .. } => self.log.tell(Level::Info, "the scene was read again"),
         }
-        if self.files.document.has_errors() {
-            self.log.tell(Level::Error, "the scene has errors; the last good one is shown");
-        } else {
-            self.log.tell(Level::Info, "the scene was read again");
-        }
-        self.told = 0;
+        // Files and shaders leave no mark on components.
+        self.drawn = Drawn::default();
+        self.told.clear();
         self.tell_problems();
         true
     }
 
-    /// How often [`Self::poll`] wants to be called.
-    pub fn poll_interval(&self) -> Duration {
-        files::INTERVAL
+    /// Has `wake` called whenever [`Self::poll`] has something to do.
+    pub fn on_change(&self, wake: Box<dyn Fn() + Send>) {
+        self.scene.on_change(wake);
     }
 
     /// Lays out the panels, does what a person asks for in them, and draws the picture if it is not that of the scene any more. `texture`
@@ -178,19 +175,18 @@ impl Session {
 
     /// Tells of the problems that have been found since the last time.
     fn tell_problems(&mut self) {
-        let world = self.app.world_mut();
-        without_repetitions(&mut world.resource_mut::<Problems>().0);
-        let (sorted, all) = self.files.problems(world);
-        let new = all.get(self.told..).unwrap_or_default();
-        for problem in new {
+        let (sorted, all) = files::problems(&self.scene, self.app.world());
+        let new: Vec<Problem> =
+            all.iter().filter(|problem| !self.told.contains(&told(problem).1)).cloned().collect();
+        for problem in &new {
             let (level, text) = told(problem);
             self.log.tell(level, text);
         }
         if let Some(tell) = self.tell.filter(|_| !new.is_empty()) {
-            tell(new);
+            tell(&new);
         }
-        self.told = all.len();
-        world.insert_resource(sorted);
+        self.told = all.iter().map(|problem| told(problem).1).collect();
+        self.app.insert_resource(sorted);
     }
 
     fn lay_out(&mut self, input: RawInput) -> (FullOutput, Laid) {
@@ -252,13 +248,4 @@ impl Session {
         self.shown.is_free = self.orbit.is_some();
         self.shown.is_orthographic = self.orbit.unwrap_or(Orbit::of(&viewpoint)).is_orthographic();
     }
-}
-
-/// Passes that find the same thing wrong in every picture say so in every picture.
-fn without_repetitions(problems: &mut Vec<Problem>) {
-    let mut seen = std::collections::HashSet::new();
-    problems.retain(|problem| {
-        let place = problem.place.as_ref().map(|place| (place.file.path().to_owned(), place.bytes.clone()));
-        seen.insert((problem.message.clone(), problem.subject.clone(), place))
-    });
 }

@@ -6,7 +6,6 @@ use crate::gpu::{Gpu, GpuError, PassTimer};
 use crate::passes::scattered_radiosity::refined;
 use crate::render::Failure;
 use crate::report::Report;
-use crate::scene::Problems;
 use crate::ui::{Level, OpenPanels, Totals};
 use crate::view::{Coarseness, Drawing, Picture};
 use crate::window::screenshot;
@@ -40,7 +39,7 @@ impl Session {
             self.refine();
         }
         for kind in std::mem::take(&mut self.wanted) {
-            screenshot::take(self.app.world(), &self.screenshots, self.files.path(), kind, &self.log);
+            screenshot::take(self.app.world(), &self.screenshots, self.scene.path(), kind, &self.log);
         }
         match is_coarse {
             // The hand lets go sometime.
@@ -112,7 +111,6 @@ impl Session {
         let world = self.app.world_mut();
         let measure = world.resource::<OpenPanels>().report;
         prepare_report(world, measure);
-        let problems = world.resource::<Problems>().0.len();
         self.app.update();
         let world = self.app.world_mut();
         let failure = world.resource_mut::<Failure>().take();
@@ -125,9 +123,7 @@ impl Session {
         self.shown.failure = failure;
         self.shown.refined = refined(world, SETS);
         count(world);
-        if world.resource::<Problems>().0.len() != problems {
-            self.tell_problems();
-        }
+        self.tell_problems();
     }
 }
 
