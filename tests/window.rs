@@ -12,7 +12,7 @@ use tyndall::report::Report;
 use tyndall::scene::{LiveScene, SceneEntities};
 use tyndall::ui::{Log, OpenPanels, Totals};
 use tyndall::window::{Frame, Painter, Session, SessionOptions};
-use tyndall::{Comparison, Split, TyndallPlugins, View, render};
+use tyndall::{Comparison, Split, TyndallPlugins, View};
 
 const BALL: &str = r#"(
     background: (0.1, 0.1, 0.1),
