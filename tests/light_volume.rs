@@ -289,3 +289,66 @@ fn light_in_a_column_is_what_its_twin_in_64_bits_says() {
     eprintln!("worst relative error: {worst:?}");
     assert!(worst.0 < 0.02, "{worst:?}");
 }
+
+/// Optical depths of light that falls aslant through a medium whose extinction is a wave across it, as a floor behind it shows them.
+fn depths_on_a_floor(studio: &mut Studio, voxels: usize) -> Vec<f64> {
+    const SIGMA: f64 = 1.5;
+    studio.volume("wave.raw", [voxels; 3], |[x, ..]| {
+        let at = (x as f32 + 0.5) / voxels as f32;
+        0.5 + 0.4 * (std::f32::consts::TAU * at).cos()
+    });
+    // Over a millionth of the mean free path opacity is as linear in the value as extinction is.
+    let (length, opacity) = (1e-6 / SIGMA, -(-1e-6_f64).exp_m1());
+    let mut seen = |shades: bool| {
+        let scene = format!(
+            "(volumes_shade_meshes: {shades}, entities: {{
+                \"eye\": ( ViewCamera: (eye: (1.55, -1.0, 0.0), target: (1.55, -3.0, 0.0), up: (0.0, 0.0, 1.0), projection: Orthographic(height: 0.2)) ),
+                \"sun\": ( DirectionalLight: (direction: (0.5, -1.0, 0.0)) ),
+                \"floor\": ( Transform: (translation: (0.0, -3.0, 0.0)), Mesh: Plane(size: (9.0, 9.0)) ),
+                \"wave\": (
+                    Volume: Raw(path: \"wave.raw\", size: ({voxels}, {voxels}, {voxels}), format: F32, spacing: ({0:?}, {0:?}, {0:?})),
+                    TransferFunction: (domain: (0.0, 1.0), points: [(0.0, (1.0, 1.0, 1.0), 0.0), (1.0, (1.0, 1.0, 1.0), {opacity:.17})], opacity_length: {length:.17}),
+                    VolumeLighting: SingleScattering() ) }})",
+            1.0 / voxels as f64
+        );
+        studio.radiance(&scene, 15, 9)
+    };
+    let (dimmed, whole) = (seen(true), seen(false));
+    // The middle row; x goes from 1.55 - 1/6 on in steps of 1/45, to the left or to the right.
+    (0..15)
+        .map(|x| -(f64::from(dimmed[4 * 15 + x][0]) / f64::from(whole[4 * 15 + x][0])).ln() / SIGMA)
+        .collect()
+}
+
+/// Half the voxel leaves a quarter of the error of the light that goes straight through.
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn direct_light_is_of_second_order_in_the_voxel() {
+    use std::f64::consts::TAU;
+    let mut studio = Studio::new();
+    let exact: Vec<f64> = (0..15)
+        .map(|pixel| {
+            // On the floor, and where the light comes out of the volume, from 0 to 1 across it.
+            let floor = 1.55 + (f64::from(pixel) - 7.0) / 45.0;
+            let out = floor - 0.5 * 2.5 + 0.5;
+            let wave = ((TAU * out).sin() - (TAU * (out - 0.5)).sin()) / (TAU * 0.5);
+            1.25f64.sqrt() * (0.5 + 0.4 * wave)
+        })
+        .collect();
+    let errors: Vec<f64> = [8, 16, 32]
+        .into_iter()
+        .map(|voxels| {
+            let found = depths_on_a_floor(&mut studio, voxels);
+            let off = |found: &mut dyn Iterator<Item = &f64>| {
+                let squares = found.zip(&exact).map(|(found, exact)| (found - exact).powi(2));
+                (squares.sum::<f64>() / 15.0).sqrt()
+            };
+            off(&mut found.iter()).min(off(&mut found.iter().rev()))
+        })
+        .collect();
+    eprintln!("errors with 8, 16 and 32 voxels: {errors:?}");
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((1.7..2.4).contains(&order), "order {order}: {errors:?}");
+    }
+}
