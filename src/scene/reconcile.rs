@@ -1,6 +1,7 @@
 //! The world becomes what a document says, touching only what differs.
 
 use super::document::SceneDocument;
+use bevy_ecs::component::ComponentId;
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
 use bevy_reflect::{Reflect, TypeRegistry, std_traits::ReflectDefault};
@@ -67,6 +68,7 @@ fn remove_missing(entity: &mut EntityWorldMut, now: &HashSet<TypeId>, registry: 
         .get_mut::<FromScene>()
         .map(|mut from_scene| std::mem::replace(&mut from_scene.bypass_change_detection().0, now.clone()));
     let gone: Vec<TypeId> = before.unwrap_or_default().difference(now).copied().collect();
+    let came_along: Vec<TypeId> = gone.iter().flat_map(|type_id| required_by(entity, *type_id)).collect();
     for type_id in gone {
         if is_required(entity, type_id, now)
             && let Some(default) = registry.get_type_data::<ReflectDefault>(type_id)
@@ -76,6 +78,30 @@ fn remove_missing(entity: &mut EntityWorldMut, now: &HashSet<TypeId>, registry: 
             component.remove(entity);
         }
     }
+    // What was there only because something that is gone required it, of what scenes can write: a world that reads the scene anew has
+    // none of it either.
+    for type_id in came_along.into_iter().filter(|type_id| !now.contains(type_id)) {
+        let held: HashSet<TypeId> =
+            entity.archetype().iter_components().filter_map(|id| type_of(entity, id)).collect();
+        if let Some(component) = registry.get_type_data::<ReflectComponent>(type_id)
+            && component.contains(&*entity)
+            && !is_required(entity, type_id, &held)
+        {
+            component.remove(entity);
+        }
+    }
+}
+
+fn type_of(entity: &EntityWorldMut, id: ComponentId) -> Option<TypeId> {
+    entity.world().components().get_info(id)?.type_id()
+}
+
+/// The components that come along with this one.
+fn required_by(entity: &EntityWorldMut, type_id: TypeId) -> Vec<TypeId> {
+    let components = entity.world().components();
+    let owner = components.get_id(type_id).and_then(|id| components.get_info(id));
+    let required = owner.into_iter().flat_map(|owner| owner.required_components().iter_ids());
+    required.filter_map(|id| components.get_info(id)?.type_id()).collect()
 }
 
 fn is_required(entity: &EntityWorldMut, type_id: TypeId, now: &HashSet<TypeId>) -> bool {
