@@ -86,6 +86,7 @@ pub mod report;
 pub mod scene;
 pub mod sources;
 mod view;
+mod whole_file;
 pub use app::{SceneTime, Stage, TyndallPlugins};
 pub use passes::light_gbuffer::LightTexels;
 pub use passes::scattered_radiosity::Refinement;

@@ -1,12 +1,13 @@
-//! Files that are there whole or not at all.
+//! Pictures and other results in files.
 
 use super::exit::Failure;
 use crate::render::{Image, Pixels};
+use crate::whole_file::{self, folder_of};
 use image::codecs::openexr::OpenExrEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
-use std::io::{self, BufWriter, Cursor, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, Cursor};
+use std::path::Path;
 
 /// Whether the path names an EXR file, which holds radiance, as opposed to a PNG.
 pub(super) fn wants_radiance(path: &Path) -> bool {
@@ -53,7 +54,7 @@ fn encode(image: &Image) -> Result<Vec<u8>, image::ImageError> {
 
 /// Writes beside the file and renames, so that whoever reads it finds the old or the new one, never half of it.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    write_atomically(path, bytes).map_err(|error| {
+    whole_file::write(path, bytes).map_err(|error| {
         let message = format!("cannot write {}: {error}", path.display());
         match error.kind() {
             io::ErrorKind::PermissionDenied
@@ -66,38 +67,4 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
             _ => Failure::Machine(message),
         }
     })
-}
-
-fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    if path.exists() && !path.is_file() {
-        // A device or a pipe is written to, not replaced; a folder gives its own error.
-        return std::fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
-    }
-    // A link stays a link: what it leads to is replaced.
-    let path = &path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    let file = temporary(&folder_of(path))?;
-    let mut writer = BufWriter::new(&file);
-    writer.write_all(bytes)?;
-    writer.flush()?;
-    drop(writer);
-    file.persist(path).map(drop).map_err(|error| error.error)
-}
-
-fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".tyndall-");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // As for any new file; the default is private to the user.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
-}
-
-fn folder_of(path: &Path) -> PathBuf {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder.into(),
-        _ => PathBuf::from("."),
-    }
 }

@@ -92,6 +92,8 @@ pub struct SceneDocument {
     head: HashMap<String, Place>,
     /// Where each entity is in the list.
     index: HashMap<String, usize>,
+    /// The files that could be read.
+    sources: HashMap<PathBuf, Arc<SourceFile>>,
 }
 
 impl SceneDocument {
@@ -111,11 +113,25 @@ impl SceneDocument {
                 Err(problem) => document.problems.push(*problem),
             }
         }
-        document.problems.extend(references(&document));
-        if !document.has_errors() {
-            document.problems.extend(advice(&document));
+        document.looked_over()
+    }
+
+    /// The same scene with other texts in some of its files. The rest is as it was read, whatever is on disk by now.
+    pub(super) fn with_texts(&self, registry: &TypeRegistry, changed: HashMap<PathBuf, String>) -> Self {
+        let Some(path) = self.files.first() else { return Self::default() };
+        let sources = self.sources.iter().map(|(path, file)| (path.clone(), file.text().to_owned()));
+        let mut texts: HashMap<PathBuf, String> = sources.collect();
+        texts.extend(changed);
+        Self::load_with(path, registry, &texts).looked_over()
+    }
+
+    /// With the problems that show only in all of it.
+    fn looked_over(mut self) -> Self {
+        self.problems.extend(references(&self));
+        if !self.has_errors() {
+            self.problems.extend(advice(&self));
         }
-        document
+        self
     }
 
     /// Whether anything keeps the scene from being shown.
@@ -146,6 +162,7 @@ impl SceneDocument {
         loader.file(path, None, true);
         let mut document = loader.document;
         document.settings = loader.settings;
+        document.sources = loader.read.into_iter().filter_map(|(path, file)| Some((path, file?))).collect();
         document
     }
 }
@@ -403,7 +420,7 @@ impl<'a> Loader<'a> {
 }
 
 /// The same for every way to write the path of a file.
-fn identity(path: &Path) -> PathBuf {
+pub(super) fn identity(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
