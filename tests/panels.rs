@@ -7,7 +7,7 @@ use bevy_ecs::prelude::*;
 use egui::{Key, Modifiers, vec2};
 use egui_kittest::{Harness, kittest::Queryable};
 use glam::DVec2;
-use tyndall::components::{SceneSettings, Shading};
+use tyndall::components::{DirectionalLight, SceneSettings, Shading};
 use tyndall::scene::{Problem, SceneEntities};
 use tyndall::ui::{
     self, Axis, Command, Level, Log, OpenPanels, PictureFile, SceneProblems, Section, Sections, Selection,
@@ -88,6 +88,36 @@ fn the_tree_names_entities_and_their_components() {
     harness.run();
     let ball = harness.state().entity("ball");
     assert_eq!(commands(&mut harness), [Command::Frame(Some(ball))]);
+}
+
+#[test]
+fn components_of_the_selected_entity_are_changed_where_they_are_shown() {
+    let mut harness = panels(SCENE);
+    let sun = harness.state().entity("sun");
+    harness.state_mut().app.insert_resource(Selection(Some(sun)));
+    harness.run();
+    let light = |harness: &Harness<Panels>| harness.state().app.world().get::<DirectionalLight>(sun).cloned();
+    let before = light(&harness).unwrap();
+    let from = harness.get_by_label("DirectionalLight.irradiance red").rect().center();
+    harness.hover_at(from);
+    harness.run();
+    harness.drag_at(from);
+    harness.run();
+    harness.hover_at(from + vec2(60.0, 0.0));
+    harness.run();
+    harness.drop_at(from + vec2(60.0, 0.0));
+    harness.run();
+    let after = light(&harness).unwrap();
+    assert!(after.irradiance.x > before.irradiance.x + 0.1, "{before:?} {after:?}");
+    assert_eq!(after.direction, before.direction);
+    // What is only looked at stays as it is.
+    let ticks = |harness: &Harness<Panels>| {
+        let world = harness.state().app.world();
+        world.entity(sun).get_change_ticks::<DirectionalLight>().unwrap().changed.get()
+    };
+    let then = ticks(&harness);
+    harness.run();
+    assert_eq!(ticks(&harness), then);
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod command;
 mod edited;
 mod entities;
 mod icons;
+mod inspect;
 mod inspector;
 mod light_direction;
 mod log;
@@ -29,6 +30,7 @@ mod transfer_function;
 
 pub use command::{Axis, Command, PictureFile};
 pub use edited::{EditError, Edited};
+pub use inspect::SceneFolder;
 pub use inspector::{InspectorContext, inspect};
 pub use light_direction::{LightDirection, light_direction};
 pub use log::{Level, Line, Log};

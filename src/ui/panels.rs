@@ -36,7 +36,7 @@ pub fn panels(ui: &mut Ui, world: &mut World, shown: &Shown) -> Laid {
         &mut open.entities,
         |ui| entities::show(ui, world, &mut commands),
     );
-    Panel::right("inspector").resizable(true).default_size(280.0).show_collapsible(
+    Panel::right("inspector").resizable(true).default_size(360.0).show_collapsible(
         ui,
         &mut open.inspector,
         |ui| sections::show(ui, world),

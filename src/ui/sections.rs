@@ -1,6 +1,6 @@
 //! What the window shows of the selected entity.
 
-use super::{Selection, problems, shading};
+use super::{Selection, inspect, problems, shading};
 use bevy_ecs::prelude::*;
 use egui::{CollapsingHeader, ScrollArea, Ui};
 
@@ -20,7 +20,10 @@ pub struct Sections(pub Vec<Section>);
 
 impl Default for Sections {
     fn default() -> Self {
-        Self(vec![Section { title: "Scattering", show: shading::show }])
+        Self(vec![
+            Section { title: "Components", show: inspect::show },
+            Section { title: "Scattering", show: shading::show },
+        ])
     }
 }
 

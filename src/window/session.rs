@@ -72,6 +72,8 @@ impl Session {
     pub fn new(mut app: App, options: SessionOptions) -> Self {
         let SessionOptions { scene, camera, screenshots, tell } = options;
         ui::init(app.world_mut());
+        let folder = scene.path().parent().unwrap_or("".as_ref()).to_owned();
+        app.insert_resource(ui::SceneFolder(folder));
         app.insert_resource(Picture { camera, ..Default::default() });
         let gpu = app.world().resource::<Gpu>();
         let pace = Pace::new(gpu.is_software());

@@ -1,0 +1,162 @@
+//! The components of the selected entity, to be changed.
+
+use super::{
+    Edited, InspectorContext, TransferFunctionData, TransferFunctionEditor, inspect, light_direction,
+};
+use crate::components::{DirectionalLight, TransferFunction};
+use crate::loading::LoadedVolume;
+use crate::view::View;
+use bevy_ecs::prelude::*;
+use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
+use bevy_reflect::{Reflect, TypeRegistry};
+use egui::Ui;
+use glam::Quat;
+use std::any::TypeId;
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+/// The folder of the scene: where paths start that have none, and beside which transfer functions to choose from are.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct SceneFolder(pub PathBuf);
+
+/// What the editors of transfer functions remember, for each entity.
+#[derive(Resource, Debug, Default)]
+struct Editors {
+    of: HashMap<Entity, TransferFunctionEditor>,
+    presets: Option<Vec<PathBuf>>,
+}
+
+/// What was changed of a component.
+type Changes = Vec<(TypeId, Vec<Edited>)>;
+
+pub(super) fn show(ui: &mut Ui, world: &mut World, selected: Option<Entity>) {
+    let Some(entity) = selected else {
+        ui.weak("Select an entity to see its components.");
+        return;
+    };
+    let registry = world.get_resource_or_init::<AppTypeRegistry>().clone();
+    let registry = registry.read();
+    let mut editors = std::mem::take(&mut *world.get_resource_or_init::<Editors>());
+    let changes = components(ui, world, entity, &registry, &mut editors);
+    world.insert_resource(editors);
+    for (type_id, edits) in changes {
+        apply(world, entity, type_id, &edits, &registry);
+    }
+}
+
+fn components(
+    ui: &mut Ui,
+    world: &World,
+    entity: Entity,
+    registry: &TypeRegistry,
+    editors: &mut Editors,
+) -> Changes {
+    let name = world.get::<Name>(entity).map_or("entity", Name::as_str).to_owned();
+    let folder = world.get_resource::<SceneFolder>().cloned().unwrap_or_default().0;
+    let entities_with = |component: &str| names_with(world, registry, component);
+    let turned = world.get_resource::<View>().map_or(Quat::IDENTITY, turned);
+    let context = InspectorContext { entities_with: &entities_with, folder: &folder, eye_from_scene: turned };
+    let mut changes = Changes::new();
+    for (type_id, component) in of_entity(world, entity, registry) {
+        if let Some(light) = component.downcast_ref::<DirectionalLight>()
+            && let Some(turned) =
+                light_direction(ui, &format!("direction of {name}"), light.direction, turned)
+        {
+            let value = Box::new(turned.direction);
+            changes
+                .push((type_id, vec![Edited { path: "direction".into(), value, finished: turned.finished }]));
+        }
+        let edits = match component.downcast_ref::<TransferFunction>() {
+            Some(function) => transfer_function(ui, world, entity, (&name, function), registry, editors),
+            None => inspect(ui, &name, component, registry, &context),
+        };
+        changes.push((type_id, edits));
+    }
+    changes
+}
+
+fn transfer_function(
+    ui: &mut Ui,
+    world: &World,
+    entity: Entity,
+    (name, function): (&str, &TransferFunction),
+    registry: &TypeRegistry,
+    editors: &mut Editors,
+) -> Vec<Edited> {
+    let folder = world.get_resource::<SceneFolder>().cloned().unwrap_or_default().0;
+    let volume = world.get::<LoadedVolume>(entity);
+    let presets = editors.presets.get_or_insert_with(|| files_in(folder.join("transfer_functions")));
+    let data = TransferFunctionData {
+        domain: volume.map_or((0.0, 1.0), |volume| volume.domain(function.domain)),
+        histogram: volume.map(|volume| &volume.data.histogram),
+        registry,
+        folder: &folder,
+        presets,
+    };
+    editors.of.entry(entity).or_default().show(ui, name, function, &data)
+}
+
+/// The RON files of a folder, by name; none where there is no such folder.
+fn files_in(folder: PathBuf) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+    files.retain(|path| path.extension().is_some_and(|ending| ending == "ron"));
+    files.sort();
+    files
+}
+
+/// How the view is turned.
+fn turned(view: &View) -> Quat {
+    let matrix = view.eye_from_scene.matrix3;
+    let scale = matrix.x_axis.length().max(f64::MIN_POSITIVE);
+    glam::DQuat::from_mat3(&(matrix * scale.recip())).as_quat()
+}
+
+/// The components of an entity that scenes can write, in the order of their names.
+fn of_entity<'w>(
+    world: &'w World,
+    entity: Entity,
+    registry: &TypeRegistry,
+) -> Vec<(TypeId, &'w dyn Reflect)> {
+    let Ok(entity) = world.get_entity(entity) else { return Vec::new() };
+    let mut all: Vec<(&str, TypeId, &dyn Reflect)> = Vec::new();
+    for registration in registry.iter() {
+        let Some(component) = registration.data::<ReflectComponent>() else { continue };
+        if let Some(value) = component.reflect(entity) {
+            let name = registration.type_info().type_path_table().short_path();
+            all.push((name, registration.type_id(), value));
+        }
+    }
+    all.sort_by_key(|(name, ..)| *name);
+    all.into_iter().map(|(_, type_id, value)| (type_id, value)).collect()
+}
+
+/// The names of the entities that have a component.
+fn names_with(world: &World, registry: &TypeRegistry, component: &str) -> Vec<String> {
+    let registration = registry.get_with_short_type_path(component);
+    let Some(component) = registration.and_then(|found| found.data::<ReflectComponent>()) else {
+        return Vec::new();
+    };
+    let Some(mut names) = world.try_query::<(EntityRef, &Name)>() else { return Vec::new() };
+    let having = names.iter(world).filter(|(entity, _)| component.reflect(*entity).is_some());
+    let mut found: Vec<String> = having.map(|(_, name)| name.as_str().to_owned()).collect();
+    found.sort();
+    found
+}
+
+/// Puts what was changed into the world; a value that is what it was wakes nothing.
+fn apply(world: &mut World, entity: Entity, type_id: TypeId, edits: &[Edited], registry: &TypeRegistry) {
+    let Some(component) = registry.get_type_data::<ReflectComponent>(type_id) else { return };
+    for edited in edits {
+        let Ok(mut entity) = world.get_entity_mut(entity) else { return };
+        let Some(old) = component.reflect(&entity) else { return };
+        let Ok(mut value) = old.reflect_clone() else { continue };
+        if let Err(error) = edited.apply(value.as_partial_reflect_mut()) {
+            log::warn!("{error}");
+            continue;
+        }
+        if old.reflect_partial_eq(value.as_partial_reflect()) != Some(true) {
+            component.insert(&mut entity, value.as_partial_reflect(), registry);
+        }
+    }
+}
