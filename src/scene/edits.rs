@@ -139,6 +139,16 @@ impl Edits {
         self.history.end_drag();
     }
 
+    /// Whether edits become one step.
+    pub fn is_dragging(&self) -> bool {
+        self.history.is_dragging()
+    }
+
+    /// The files as they were last read.
+    pub(super) fn base(&self) -> &Arc<SceneDocument> {
+        &self.base
+    }
+
     /// Takes the last step back. Whether there was one.
     ///
     /// # Errors

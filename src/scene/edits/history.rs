@@ -34,6 +34,10 @@ impl History {
         self.done.iter_mut().for_each(|step| step.is_open = false);
     }
 
+    pub fn is_dragging(&self) -> bool {
+        self.is_dragging
+    }
+
     /// Keeps what was done. What was undone before cannot be done again.
     pub fn push(&mut self, changes: Vec<Change>, registry: &TypeRegistry) {
         self.undone.clear();

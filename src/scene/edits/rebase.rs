@@ -8,6 +8,7 @@ use super::{EditError, Edits, registry_of};
 use crate::scene::document::{SceneDocument, SceneEntity, identity};
 use crate::scene::path;
 use crate::scene::problem::Problem;
+use crate::scene::reconcile::{Changes, reconcile_after};
 use crate::scene::write::equal;
 use bevy_ecs::world::World;
 use bevy_reflect::{Reflect, TypeRegistry};
@@ -40,19 +41,31 @@ impl Edits {
     ///
     /// If the document has errors, which it gives back; then everything stays as it is.
     pub fn reload(&mut self, world: &mut World, document: SceneDocument) -> Result<usize, Vec<Problem>> {
+        let known = self.conflicts_ever;
+        self.take_in(world, Arc::new(document))?;
+        Ok((self.conflicts_ever - known) as usize)
+    }
+
+    /// The same, and gives what it changed in the world.
+    pub(in crate::scene) fn take_in(
+        &mut self,
+        world: &mut World,
+        document: Arc<SceneDocument>,
+    ) -> Result<Changes, Vec<Problem>> {
         if document.has_errors() {
-            return Err(document.problems);
+            return Err(document.problems.clone());
         }
         let registry = registry_of(world);
         let registry = registry.read();
         let told = |error: EditError| vec![Problem::error(error.to_string())];
-        let was = std::mem::replace(&mut self.base, Arc::new(document));
+        let was = std::mem::replace(&mut self.base, document);
         let rebased = self.rebased(&was, &registry);
         let (draft, shown, clashes) = rebased.map_err(|error| {
             self.base = was.clone();
             told(error)
         })?;
-        (self.draft, self.document) = (draft, shown);
+        self.draft = draft;
+        let last = std::mem::replace(&mut self.document, shown);
         self.conflicts.retain_mut(|conflict| {
             let entity = conflict.entity.as_deref();
             if let Ok(theirs) = Version::of(&self.document, entity, &conflict.path, &registry) {
@@ -60,7 +73,6 @@ impl Edits {
             }
             !conflict.ours.is_like(&conflict.theirs, &registry)
         });
-        let count = clashes.len();
         for clash in clashes {
             let at = |document: &SceneDocument| {
                 Version::of(document, clash.entity.as_deref(), &clash.path, &registry).unwrap_or_default()
@@ -72,8 +84,7 @@ impl Edits {
             self.conflicts.push(Conflict { id: self.conflicts_ever, entity, path, ours, theirs, was });
         }
         drop(registry);
-        self.show(world);
-        Ok(count)
+        Ok(reconcile_after(world, &self.document, Some(&last)))
     }
 
     /// The draft for the files as they are now, what is shown with it, and what of it is in conflict with them.
