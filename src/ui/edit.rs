@@ -126,3 +126,92 @@ fn changed(
     edited.apply(value.as_partial_reflect_mut()).map_err(|error| error.to_string())?;
     Ok((old.reflect_partial_eq(value.as_partial_reflect()) != Some(true)).then_some(value))
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::*;
+    use crate::TyndallPlugins;
+    use crate::components::{Phong, Transform};
+    use bevy_app::App;
+    use glam::Vec3;
+
+    const SCENE: &str = "(entities: { \"ball\": ( Mesh: Sphere(), Phong: (shininess: 5.0) ) })";
+
+    /// An app with a scene that can be edited, its ball, and the scene's folder.
+    fn editable() -> (App, Entity, tempfile::TempDir) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.ron");
+        std::fs::write(&path, SCENE).unwrap();
+        let mut app = App::new();
+        app.add_plugins(TyndallPlugins);
+        let edits = Edits::open(app.world_mut(), &path, &[]).unwrap();
+        app.insert_resource(edits);
+        let ball = app.world().resource::<SceneEntities>().0["ball"];
+        (app, ball, folder)
+    }
+
+    fn edited(path: &str, value: impl Reflect, finished: bool) -> Edited {
+        Edited { path: path.into(), value: Box::new(value), finished }
+    }
+
+    fn text(world: &mut World) -> String {
+        let texts = with_edits(world, |edits, world| edits.preview(world)).unwrap().unwrap();
+        texts.into_values().next().unwrap_or_else(|| SCENE.into())
+    }
+
+    #[test]
+    fn a_gesture_is_one_step() {
+        let (mut app, ball, _folder) = editable();
+        let world = app.world_mut();
+        edit(world, ball, "Phong", &edited("shininess", 6.0_f32, true)).unwrap();
+        for value in [7.0_f32, 8.0, 9.0] {
+            edit(world, ball, "Phong", &edited("shininess", value, false)).unwrap();
+        }
+        edit(world, ball, "Phong", &edited("shininess", 9.0_f32, true)).unwrap();
+        assert_eq!(world.get::<Phong>(ball).unwrap().shininess, 9.0);
+        edit(world, ball, "Phong", &edited("shininess", 10.0_f32, true)).unwrap();
+        for before in [9.0, 6.0, 5.0] {
+            with_edits(world, |edits, world| edits.undo(world)).unwrap().unwrap();
+            assert_eq!(world.get::<Phong>(ball).unwrap().shininess, before);
+        }
+        assert!(!world.resource::<Edits>().is_unsaved());
+    }
+
+    #[test]
+    fn what_came_along_is_written_once_it_is_changed() {
+        let (mut app, ball, _folder) = editable();
+        let world = app.world_mut();
+        let origin = world.get::<Transform>(ball).unwrap().translation;
+        edit(world, ball, "Transform", &edited("translation", origin, true)).unwrap();
+        assert_eq!(text(world), SCENE, "nothing was changed");
+        edit(world, ball, "Transform", &edited("translation", Vec3::X, true)).unwrap();
+        assert_eq!(world.get::<Transform>(ball).unwrap().translation, Vec3::X);
+        assert!(text(world).contains("Transform: (translation: (1.0, 0.0, 0.0))"), "{}", text(world));
+    }
+
+    #[test]
+    fn an_edit_that_no_scene_can_have_changes_nothing() {
+        let (mut app, ball, _folder) = editable();
+        let world = app.world_mut();
+        let error = edit(world, ball, "Phong", &edited("shininess", -1.0_f32, true)).unwrap_err();
+        assert!(error.contains("-1"), "{error}");
+        assert!(edit(world, ball, "Phong", &edited("hardness", 1.0_f32, true)).is_err());
+        assert!(edit(world, ball, "Foam", &edited("", 1.0_f32, true)).is_err());
+        assert_eq!(world.get::<Phong>(ball).unwrap().shininess, 5.0);
+        assert_eq!(text(world), SCENE);
+    }
+
+    #[test]
+    fn what_is_not_of_the_scene_is_changed_in_the_world() {
+        let (mut app, ball, _folder) = editable();
+        let world = app.world_mut();
+        let own = world.spawn((Name::new("ball"), Phong::default())).id();
+        edit(world, own, "Phong", &edited("shininess", 3.0_f32, true)).unwrap();
+        assert_eq!(world.get::<Phong>(own).unwrap().shininess, 3.0);
+        assert_eq!(world.get::<Phong>(ball).unwrap().shininess, 5.0);
+        world.remove_resource::<Edits>();
+        edit(world, ball, "Phong", &edited("shininess", 4.0_f32, false)).unwrap();
+        assert_eq!(world.get::<Phong>(ball).unwrap().shininess, 4.0);
+    }
+}
