@@ -90,6 +90,7 @@ pub mod scene;
 pub mod sources;
 pub mod ui;
 mod view;
+mod whole_file;
 pub mod window;
 pub use app::{SceneTime, Stage, TyndallPlugins};
 pub use passes::light_gbuffer::LightTexels;

@@ -1,10 +1,11 @@
 //! Pictures as files, which are there whole or not at all.
 
 use crate::render::{Image, Pixels};
+use crate::whole_file;
 use image::codecs::openexr::OpenExrEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
-use std::io::{self, BufWriter, Cursor, Write};
+use std::io::{self, Cursor};
 use std::path::{Path, PathBuf};
 
 /// Why a file was not written.
@@ -70,42 +71,7 @@ fn encode(image: &Image) -> Result<Vec<u8>, image::ImageError> {
     Ok(bytes.into_inner())
 }
 
-/// Writes beside the file and renames, so that whoever reads it finds the old or the new one, never half of it.
+/// Writes a file that is there whole or not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    write_atomically(path, bytes).map_err(|source| WriteError::Write { path: path.to_owned(), source })
-}
-
-fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    if path.exists() && !path.is_file() {
-        // A device or a pipe is written to, not replaced; a folder gives its own error.
-        return std::fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
-    }
-    // A link stays a link: what it leads to is replaced.
-    let path = &path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    let file = temporary(&folder_of(path))?;
-    let mut writer = BufWriter::new(&file);
-    writer.write_all(bytes)?;
-    writer.flush()?;
-    drop(writer);
-    file.persist(path).map(drop).map_err(|error| error.error)
-}
-
-fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".tyndall-");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // As for any new file; the default is private to the user.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
-}
-
-/// The folder that a file is in.
-pub(crate) fn folder_of(path: &Path) -> PathBuf {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder.into(),
-        _ => PathBuf::from("."),
-    }
+    whole_file::write(path, bytes).map_err(|source| WriteError::Write { path: path.to_owned(), source })
 }

@@ -4,11 +4,15 @@
 
 use bevy_app::App;
 use bevy_ecs::prelude::*;
+use bevy_ecs::reflect::AppTypeRegistry;
 use egui::{Key, Modifiers, vec2};
-use egui_kittest::{Harness, kittest::Queryable};
+use egui_kittest::{
+    Harness,
+    kittest::{NodeT, Queryable},
+};
 use glam::DVec2;
 use tyndall::components::{DirectionalLight, SceneSettings, Shading};
-use tyndall::scene::{Problem, SceneEntities};
+use tyndall::scene::{Edits, Problem, SceneDocument, SceneEntities};
 use tyndall::ui::{
     self, Axis, Command, Level, Log, OpenPanels, PictureFile, SceneProblems, Section, Sections, Selection,
     Shown,
@@ -157,6 +161,7 @@ fn errors_stand_with_the_entity_that_has_them() {
 #[test]
 fn scattering_is_switched_for_everything_and_for_one_entity() {
     let mut harness = panels(SCENE);
+    show_only_scattering(&mut harness);
     harness.get_by_label("Scattering in the scene").click();
     harness.run();
     assert_eq!(harness.state().resource::<SceneSettings>().shading, Shading::Local);
@@ -359,4 +364,94 @@ fn ten_thousand_entities_are_scrolled_through() {
         harness.step();
     }
     assert!(started.elapsed().as_secs_f64() < 5.0, "{:?} for ten frames", started.elapsed());
+}
+
+/// Leaves nothing in the right panel but what switches scattering: what the inspector shows has some of the same names.
+fn show_only_scattering(harness: &mut Harness<'_, Panels>) {
+    let world = harness.state_mut().app.world_mut();
+    world.resource_mut::<Sections>().0.retain(|section| section.title == "Scattering");
+    harness.run();
+}
+
+/// Panels over a scene that can be edited, and its file.
+fn editable() -> (Harness<'static, Panels>, tempfile::TempDir) {
+    let mut harness = panels(SCENE);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.ron");
+    std::fs::write(&path, SCENE).unwrap();
+    let world = harness.state_mut().app.world_mut();
+    let edits = Edits::open(world, &path, &[]).unwrap();
+    world.insert_resource(edits);
+    harness.run();
+    (harness, folder)
+}
+
+#[test]
+fn shading_is_an_edit_that_can_be_undone() {
+    let (mut harness, _folder) = editable();
+    show_only_scattering(&mut harness);
+    assert!(harness.get_by_label("Undo").accesskit_node().is_disabled());
+    harness.get_by_label("Scattering in the scene").click();
+    harness.run();
+    let next = |harness: &Harness<'_, Panels>| harness.state().app.world().resource::<Edits>().next_undo();
+    assert_eq!(harness.state().resource::<SceneSettings>().shading, Shading::Local);
+    assert_eq!(next(&harness).as_deref(), Some("shading"));
+    harness.get_by_label("ball").click();
+    harness.run();
+    harness.get_by_label("local").click();
+    harness.run();
+    let ball = harness.state().entity("ball");
+    assert_eq!(harness.state().app.world().get::<Shading>(ball), Some(&Shading::Local));
+    assert_eq!(next(&harness).as_deref(), Some("ball.Shading"));
+    harness.get_by_label("as the scene").click();
+    harness.run();
+    assert_eq!(harness.state().app.world().get::<Shading>(ball), None);
+    harness.get_by_label("not saved");
+    for name in ["Undo", "Save"] {
+        harness.get_by_label(name).click();
+        harness.run();
+    }
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Y);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
+    harness.run();
+    let asked = [Command::Undo, Command::Save, Command::Undo, Command::Redo, Command::Save];
+    let mut found = commands(&mut harness);
+    // Keys of one frame are taken in the order of what they do.
+    assert_eq!(found.drain(..2).collect::<Vec<_>>(), asked[..2]);
+    for command in &asked[2..] {
+        assert!(found.contains(command), "{found:?}");
+    }
+}
+
+#[test]
+fn conflicts_are_decided_where_they_are_listed() {
+    let (mut harness, folder) = editable();
+    harness.get_by_label("Scattering in the scene").click();
+    harness.run();
+    let theirs = SCENE.replace("entities: {", "shading: Local, millimetres_per_unit: 2.0, entities: {");
+    assert!(harness.query_by_label("Ours: shading").is_none());
+    let reload = |harness: &mut Harness<'_, Panels>, text: &str| {
+        let path = folder.path().join("scene.ron");
+        std::fs::write(&path, text).unwrap();
+        let world = harness.state_mut().app.world_mut();
+        let registry = world.resource::<AppTypeRegistry>().clone();
+        let document = SceneDocument::load(&path, &registry.read(), &[]);
+        world.resource_scope(|world, mut edits: Mut<Edits>| edits.reload(world, document).unwrap());
+        harness.run();
+    };
+    reload(&mut harness, &theirs);
+    assert!(harness.query_by_label("Ours: shading").is_none(), "both have made the same of it");
+    harness.state_mut().app.world_mut().resource_scope(|world, mut edits: Mut<Edits>| {
+        edits.set_setting(world, "millimetres_per_unit", &5.0_f32).unwrap();
+    });
+    reload(&mut harness, &theirs.replace("2.0", "3.0"));
+    let shown =
+        |harness: &Harness<'_, Panels>| harness.state().resource::<SceneSettings>().millimetres_per_unit;
+    assert_eq!(shown(&harness), 3.0);
+    harness.get_by_label("Theirs: millimetres_per_unit");
+    harness.get_by_label("Ours: millimetres_per_unit").click();
+    harness.run();
+    assert_eq!(shown(&harness), 5.0);
+    assert!(harness.query_by_label("Ours: millimetres_per_unit").is_none());
 }

@@ -3,13 +3,14 @@
 #![allow(clippy::unwrap_used, reason = "a helper that cannot do its work fails the test")]
 
 use bevy_app::App;
+use bevy_ecs::prelude::{Mut, World};
 use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, pos2, vec2};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use tyndall::components::{Phong, Shading};
 use tyndall::gpu::{Gpu, GpuOptions, Target, read_texture};
 use tyndall::report::Report;
-use tyndall::scene::{LiveScene, SceneEntities};
+use tyndall::scene::{Edits, LiveScene, Override, SceneEntities, Side};
 use tyndall::ui::{Log, OpenPanels, Totals};
 use tyndall::window::{Frame, Painter, Session, SessionOptions};
 use tyndall::{Comparison, Split, TyndallPlugins, View};
@@ -50,6 +51,10 @@ const SIZE: glam::UVec2 = glam::UVec2::new(640, 400);
 
 impl Screen {
     fn new(scene: &str) -> Self {
+        Self::overridden(scene, &[])
+    }
+
+    fn overridden(scene: &str, overrides: &[Override]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.ron");
         std::fs::write(&path, scene).unwrap();
@@ -57,7 +62,7 @@ impl Screen {
             pollster::block_on(Gpu::new(&GpuOptions::default())).unwrap_or_else(|error| panic!("{error}"));
         let mut app = App::new();
         app.add_plugins(TyndallPlugins).insert_resource(gpu.clone());
-        let scene = LiveScene::open(&mut app, &path, &[]);
+        let scene = LiveScene::open(&mut app, &path, overrides);
         // No room for panels: the picture is as large as the screen, but for the bars.
         let none = OpenPanels { entities: false, inspector: false, report: false, log: false, axes: false };
         app.insert_resource(none);
@@ -127,6 +132,34 @@ impl Screen {
         sum
     }
 
+    fn text(&self) -> String {
+        std::fs::read_to_string(self.scene()).unwrap()
+    }
+
+    /// Edits the scene as panels do.
+    fn edit<T>(&mut self, change: impl FnOnce(&mut Edits, &mut World) -> T) -> T {
+        self.session.world().resource_scope(|world, mut edits: Mut<Edits>| change(&mut edits, world))
+    }
+
+    fn set(&mut self, path: &str, value: impl bevy_reflect::Reflect) {
+        self.edit(|edits, world| edits.set(world, "ball", path, value.as_partial_reflect())).unwrap();
+    }
+
+    /// Presses a key, and says whether the window is to be closed.
+    fn press(&mut self, key: egui::Key, modifiers: Modifiers) -> bool {
+        let event = Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
+        let input = RawInput {
+            screen_rect: Some(egui::Rect::from_min_size(Pos2::ZERO, vec2(SIZE.x as f32, SIZE.y as f32))),
+            time: Some(self.started.elapsed().as_secs_f64()),
+            focused: true,
+            events: vec![event],
+            ..Default::default()
+        };
+        let mut frame = self.session.frame(input, self.painter.picture());
+        self.painter.skip(&self.gpu, &mut frame.output);
+        frame.quit
+    }
+
     fn pictures(&self) -> u64 {
         self.session.counts().1
     }
@@ -169,7 +202,9 @@ fn nothing_is_drawn_while_nothing_changes() {
     assert!(screen.session.counts().0 > frames);
     assert_eq!(screen.pictures(), pictures);
     // Nor does a file that is written as it was.
-    screen.write(BALL);
+    std::fs::write(screen.scene(), BALL).unwrap();
+    std::thread::sleep(Duration::from_millis(200));
+    assert!(!screen.session.poll(), "it says what it said before");
     screen.settle();
     assert_eq!(screen.pictures(), pictures);
 }
@@ -214,6 +249,108 @@ fn edits_in_the_world_are_drawn_once() {
     assert!(green > 100.0 && red < 60.0, "{red} {green}");
     // Coarsely, and in full; on a fast machine in full at once.
     assert!((1..=2).contains(&(screen.pictures() - before)), "{}", screen.pictures() - before);
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn edits_are_undone_done_again_and_saved_by_keys() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    screen.set("Phong.diffuse", glam::Vec3::new(0.0, 0.0, 0.8));
+    screen.settle();
+    let [red, _, blue] = screen.colour(0.0, 0.0);
+    assert!(blue > 100.0 && red < 60.0, "{red} {blue}");
+    assert!(screen.session.is_unsaved());
+    screen.press(egui::Key::Z, Modifiers::COMMAND);
+    screen.settle();
+    assert!(is_red(screen.colour(0.0, 0.0)));
+    assert!(!screen.session.is_unsaved(), "an edit that is undone leaves nothing");
+    screen.press(egui::Key::Z, Modifiers::COMMAND | Modifiers::SHIFT);
+    screen.settle();
+    assert!(screen.colour(0.0, 0.0)[2] > 100.0);
+    assert_eq!(screen.text(), BALL, "nothing is written that was not saved");
+    screen.press(egui::Key::S, Modifiers::COMMAND);
+    assert_eq!(screen.text(), BALL.replace("(0.8, 0.0, 0.0)", "(0.0, 0.0, 0.8)"));
+    assert!(!screen.session.is_unsaved());
+    screen.press(egui::Key::Z, Modifiers::COMMAND);
+    screen.press(egui::Key::S, Modifiers::COMMAND);
+    assert_eq!(screen.text(), BALL);
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn an_edit_survives_what_others_save_beside_it_and_conflicts_wait() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    screen.set("Phong.diffuse", glam::Vec3::new(0.0, 0.0, 0.8));
+    let others = BALL.replace("radius: 0.6", "radius: 0.9");
+    screen.write(&others);
+    screen.settle();
+    let [red, _, blue] = screen.colour(0.46, 0.0);
+    assert!(blue > 60.0 && red < 60.0, "the larger ball in the edited colour: {red} {blue}");
+    screen.press(egui::Key::S, Modifiers::COMMAND);
+    let saved = others.replace("(0.8, 0.0, 0.0)", "(0.0, 0.0, 0.8)");
+    assert_eq!(screen.text(), saved);
+
+    screen.set("Phong.diffuse", glam::Vec3::new(0.0, 0.8, 0.0));
+    let theirs = saved.replace("(0.0, 0.0, 0.8)", "(0.8, 0.0, 0.0)");
+    screen.write(&theirs);
+    screen.settle();
+    assert!(is_red(screen.colour(0.0, 0.0)), "the file is shown");
+    screen.press(egui::Key::S, Modifiers::COMMAND);
+    assert_eq!(screen.text(), theirs, "nothing is saved over what nobody chose against");
+    let told = screen.session.world().resource::<Log>().lines();
+    assert!(told.iter().any(|line| line.text.contains("choose for each")), "{told:?}");
+    screen.edit(|edits, world| {
+        let conflict = edits.conflicts()[0].id;
+        edits.resolve(world, conflict, Side::Ours).unwrap();
+    });
+    screen.press(egui::Key::S, Modifiers::COMMAND);
+    assert_eq!(screen.text(), saved.replace("(0.0, 0.0, 0.8)", "(0.0, 0.8, 0.0)"));
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn a_scene_that_is_mended_can_be_edited() {
+    let mut screen = Screen::new("(entities: { \"ball\": ( Mesh: Spere() ) })");
+    screen.settle();
+    assert!(!screen.session.world().contains_resource::<Edits>());
+    screen.write(BALL);
+    screen.set("Phong.diffuse", glam::Vec3::new(0.0, 0.0, 0.8));
+    screen.settle();
+    assert!(screen.colour(0.0, 0.0)[2] > 100.0);
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn overrides_are_edits_that_can_be_saved() {
+    let set = "ball.Phong.diffuse=(0.0, 0.0, 0.8)".parse().unwrap();
+    let mut screen = Screen::overridden(BALL, &[set]);
+    screen.settle();
+    assert!(screen.session.is_unsaved());
+    // What is saved beside them meanwhile does not undo them.
+    let others = BALL.replace("radius: 0.6", "radius: 0.9");
+    screen.write(&others);
+    screen.settle();
+    let [red, _, blue] = screen.colour(0.46, 0.0);
+    assert!(blue > 60.0 && red < 60.0, "{red} {blue}");
+    screen.press(egui::Key::S, Modifiers::COMMAND);
+    assert_eq!(screen.text(), others.replace("(0.8, 0.0, 0.0)", "(0.0, 0.0, 0.8)"));
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn nobody_leaves_unsaved_edits_unasked() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    assert!(screen.session.may_quit() && screen.press(egui::Key::Q, Modifiers::COMMAND));
+    screen.set("Phong.shininess", 3.0_f32);
+    assert!(!screen.press(egui::Key::Q, Modifiers::COMMAND));
+    screen.settle();
+    assert!(!screen.press(egui::Key::Escape, Modifiers::NONE), "the window stays");
+    assert!(!screen.session.may_quit(), "asked again");
+    screen.press(egui::Key::S, Modifiers::COMMAND);
+    assert!(screen.session.may_quit());
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! Where results are written to.
 
 use super::exit::Failure;
-use crate::picture_file::{self, WriteError, folder_of, is_place_at_fault};
+use crate::picture_file::{self, WriteError, is_place_at_fault};
 use crate::render::Image;
+use crate::whole_file::folder_of;
 use std::path::Path;
 
 /// Whether the path names an EXR file, which holds radiance, as opposed to a PNG.

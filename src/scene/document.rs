@@ -158,6 +158,21 @@ impl SceneDocument {
         document.looked_over()
     }
 
+    /// The same scene with other texts in some of its files. The rest is as it was read, whatever is on disk by now. What another version of
+    /// the scene, `last`, says in the same words is not read again.
+    pub(super) fn with_texts(
+        &self,
+        registry: &TypeRegistry,
+        changed: HashMap<PathBuf, String>,
+        last: &Self,
+    ) -> Self {
+        let Some(path) = self.files.first() else { return Self::default() };
+        let sources = self.sources.iter().map(|(path, file)| (path.clone(), file.text().to_owned()));
+        let mut texts: HashMap<PathBuf, String> = sources.collect();
+        texts.extend(changed);
+        loader::load(path, registry, &texts, Some(last)).looked_over()
+    }
+
     /// With the problems that show only in all of it.
     fn looked_over(mut self) -> Self {
         self.problems.extend(references(&self));

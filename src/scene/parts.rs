@@ -4,6 +4,7 @@
 //! the place of a part is the difference of two addresses. Each part can then be read as the type that its place in the scene asks
 //! for, and a mistake in one of them does not hide those in the others.
 
+use super::problem::Place;
 use super::tokens::{tokens, unbalanced, without_comments_around};
 use ron::value::RawValue;
 use serde::de::{
@@ -63,6 +64,17 @@ impl<'a> Part<'a> {
     /// The part at these bytes of a file.
     pub fn within(whole: &'a str, bytes: Range<usize>) -> Option<Self> {
         Some(Self { whole, text: whole.get(bytes)? })
+    }
+
+    /// What stands at a place.
+    pub fn at(place: &'a Place) -> Self {
+        let whole = place.file.text();
+        Self { whole, text: &whole[place.bytes.clone()] }
+    }
+
+    /// The whole text of the file.
+    pub fn file(&self) -> &'a str {
+        self.whole
     }
 
     /// Where the part is in its file.

@@ -1,6 +1,7 @@
 //! The world becomes what a document says, touching only what differs.
 
 use super::document::{SceneDocument, SceneEntity};
+use bevy_ecs::component::ComponentId;
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
 use bevy_reflect::{Reflect, TypeRegistry, std_traits::ReflectDefault};
@@ -131,7 +132,9 @@ impl Writer<'_> {
             return;
         }
         let before = std::mem::replace(&mut from_scene.bypass_change_detection().0, now.clone());
-        for type_id in before.difference(&now).copied() {
+        let gone: Vec<TypeId> = before.difference(&now).copied().collect();
+        let came_along: Vec<TypeId> = gone.iter().flat_map(|type_id| self.required_by(*type_id)).collect();
+        for type_id in gone {
             if self.is_required(type_id, &now)
                 && let Some(default) = self.registry.get_type_data::<ReflectDefault>(type_id)
             {
@@ -141,6 +144,35 @@ impl Writer<'_> {
                 self.changes.removed += 1;
             }
         }
+        self.remove_left_over(entity, came_along.into_iter().filter(|type_id| !now.contains(type_id)));
+    }
+
+    /// Takes away what was there only because something that is gone required it, of what scenes can write: a world that reads the scene
+    /// anew has none of it either.
+    fn remove_left_over(&mut self, entity: Entity, came_along: impl Iterator<Item = TypeId>) {
+        for type_id in came_along {
+            let entity_ref = self.world.entity(entity);
+            let held = entity_ref.archetype().iter_components().filter_map(|id| self.type_of(id)).collect();
+            if let Some(component) = self.registry.get_type_data::<ReflectComponent>(type_id)
+                && component.contains(entity_ref)
+                && !self.is_required(type_id, &held)
+            {
+                component.remove(&mut self.world.entity_mut(entity));
+                self.changes.removed += 1;
+            }
+        }
+    }
+
+    fn type_of(&self, id: ComponentId) -> Option<TypeId> {
+        self.world.components().get_info(id)?.type_id()
+    }
+
+    /// The components that come along with this one.
+    fn required_by(&self, type_id: TypeId) -> Vec<TypeId> {
+        let components = self.world.components();
+        let owner = components.get_id(type_id).and_then(|id| components.get_info(id));
+        let required = owner.into_iter().flat_map(|owner| owner.required_components().iter_ids());
+        required.filter_map(|id| self.type_of(id)).collect()
     }
 
     fn is_required(&self, type_id: TypeId, now: &HashSet<TypeId>) -> bool {

@@ -7,6 +7,7 @@
 //! ```
 
 use super::document::{Override, SceneDocument};
+use super::edits::Edits;
 use super::problem::{Problem, Problems};
 use super::reconcile::{Changes, reconcile_after};
 use super::watch::{Altered, FileWatch, Found, Reason, Wake, content};
@@ -54,7 +55,9 @@ pub struct LiveScene {
     path: PathBuf,
     overrides: Vec<Override>,
     /// The last good text, which the world was made from.
-    document: SceneDocument,
+    document: Arc<SceneDocument>,
+    /// Whether a person is to be able to edit it.
+    is_for_editing: bool,
     /// What is wrong with the text that is there now, if it cannot be shown.
     refused: Option<Vec<Problem>>,
     /// The files that were looked for when the text was read last.
@@ -95,7 +98,8 @@ impl LiveScene {
         let mut scene = Self {
             path: path.to_owned(),
             overrides: overrides.to_vec(),
-            document: SceneDocument::default(),
+            document: Arc::default(),
+            is_for_editing: false,
             refused: None,
             text: BTreeSet::new(),
             watch,
@@ -106,6 +110,23 @@ impl LiveScene {
         scene.watch.watch(Reason::Shaders, shader_files());
         scene.read(app);
         scene
+    }
+
+    /// From here on the world has [`Edits`] of the scene, as soon as there is a version without errors. Overrides become edits that are not
+    /// saved. Edits stay when files are read again; what the files say to the contrary meanwhile becomes a [`Conflict`](super::Conflict).
+    pub fn allow_edits(&mut self, app: &mut App) {
+        self.is_for_editing = true;
+        if self.refused.is_none() {
+            self.refused = self.begin_edits(app.world_mut()).err();
+        }
+    }
+
+    fn begin_edits(&mut self, world: &mut World) -> Result<(), Vec<Problem>> {
+        let edits = Edits::open(world, &self.path, &self.overrides)?;
+        self.overrides.clear();
+        self.document = edits.base().clone();
+        world.insert_resource(edits);
+        Ok(())
     }
 
     /// Where the scene is.
@@ -145,14 +166,19 @@ impl LiveScene {
         Reload::Reloaded { changes, assets, shaders }
     }
 
+    /// Takes what the text's files say now as known: they were written by whoever calls this.
+    pub(crate) fn was_saved(&mut self, app: &mut App) {
+        self.read(app);
+    }
+
     /// Reads the text again, and makes the world what it says if it is good.
     fn read(&mut self, app: &mut App) -> Changes {
         let started = Instant::now();
         let world = app.world_mut();
         let registry = world.resource::<AppTypeRegistry>().clone();
         let document = {
-            let last = Some(&self.document);
-            SceneDocument::load_after(&self.path, &registry.read(), &self.overrides, last)
+            let last = Some(self.document.as_ref());
+            SceneDocument::load_after(&self.path, &registry.read(), self.overrides_in_force(world), last)
         };
         world.resource_mut::<Report>().spent("parse", started);
         self.watch_text(&document);
@@ -161,14 +187,46 @@ impl LiveScene {
             return Changes::default();
         }
         let started = Instant::now();
-        // Before the first good text the world is whatever it is.
-        let last = Some(&self.document).filter(|last| !last.trail().is_empty());
-        let changes = reconcile_after(world, &document, last);
-        world.insert_resource(Problems(document.problems.clone()));
+        let shown = self.show(world, Arc::new(document));
         world.resource_mut::<Report>().spent("reconcile", started);
-        self.refused = None;
+        match shown {
+            Ok(changes) => {
+                self.refused = None;
+                changes
+            }
+            Err(problems) => {
+                self.refused = Some(problems);
+                Changes::default()
+            }
+        }
+    }
+
+    /// Those that are not edits.
+    fn overrides_in_force(&self, world: &World) -> &[Override] {
+        if world.contains_resource::<Edits>() { &[] } else { &self.overrides }
+    }
+
+    /// Makes the world what a document without errors says, with what a person has edited.
+    fn show(&mut self, world: &mut World, document: Arc<SceneDocument>) -> Result<Changes, Vec<Problem>> {
+        // Before the first good text the world is whatever it is.
+        let last = Some(self.document.as_ref()).filter(|last| !last.trail().is_empty());
+        let changes = match world.contains_resource::<Edits>() {
+            true => world.resource_scope(|world, mut edits: Mut<Edits>| {
+                let changes = edits.take_in(world, document.clone())?;
+                world.insert_resource(Problems(edits.document().problems.clone()));
+                Ok::<_, Vec<Problem>>(changes)
+            })?,
+            false => {
+                let changes = reconcile_after(world, &document, last);
+                world.insert_resource(Problems(document.problems.clone()));
+                changes
+            }
+        };
         self.document = document;
-        changes
+        if self.is_for_editing && !world.contains_resource::<Edits>() {
+            self.begin_edits(world)?;
+        }
+        Ok(changes)
     }
 
     fn watch_text(&mut self, document: &SceneDocument) {

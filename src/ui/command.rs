@@ -27,8 +27,26 @@ pub enum Command {
     ResetCamera,
     /// To write the picture into a file.
     Screenshot(PictureFile),
-    /// To close the window.
+    /// To take the last edit back.
+    Undo,
+    /// To take the last undo back.
+    Redo,
+    /// To write edits to the files that they are of.
+    Save,
+    /// To close the window, or to be asked first where edits are not saved.
     Quit,
+    /// To save and close the window, if all could be saved.
+    SaveAndQuit,
+    /// To close the window, whatever is not saved.
+    Discard,
+}
+
+impl Command {
+    /// Whether it is about what was changed in the scene, or may be lost.
+    pub(crate) fn concerns_edits(&self) -> bool {
+        use Command::{Discard, Quit, Redo, Save, SaveAndQuit, Undo};
+        matches!(self, Undo | Redo | Save | Quit | SaveAndQuit | Discard)
+    }
 }
 
 /// The side of the scene from which one looks along an axis.

@@ -1,5 +1,6 @@
 //! The components of the selected entity, to be changed.
 
+use super::edit::{edit, tell};
 use super::{
     Edited, InspectorContext, TransferFunctionData, TransferFunctionEditor, inspect, light_direction,
 };
@@ -11,7 +12,6 @@ use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
 use bevy_reflect::{Reflect, TypeRegistry};
 use egui::Ui;
 use glam::Quat;
-use std::any::TypeId;
 use std::collections::HashMap;
 use std::path::PathBuf;
 
@@ -26,8 +26,8 @@ struct Editors {
     presets: Option<Vec<PathBuf>>,
 }
 
-/// What was changed of a component.
-type Changes = Vec<(TypeId, Vec<Edited>)>;
+/// What was changed, by the name of its component.
+type Changes = Vec<(String, Vec<Edited>)>;
 
 pub(super) fn show(ui: &mut Ui, world: &mut World, selected: Option<Entity>) {
     let Some(entity) = selected else {
@@ -35,12 +35,11 @@ pub(super) fn show(ui: &mut Ui, world: &mut World, selected: Option<Entity>) {
         return;
     };
     let registry = world.get_resource_or_init::<AppTypeRegistry>().clone();
-    let registry = registry.read();
     let mut editors = std::mem::take(&mut *world.get_resource_or_init::<Editors>());
-    let changes = components(ui, world, entity, &registry, &mut editors);
+    let changes = components(ui, world, entity, &registry.read(), &mut editors);
     world.insert_resource(editors);
-    for (type_id, edits) in changes {
-        apply(world, entity, type_id, &edits, &registry);
+    for (component, edits) in changes {
+        apply(world, entity, &component, &edits);
     }
 }
 
@@ -57,20 +56,20 @@ fn components(
     let turned = world.get_resource::<View>().map_or(Quat::IDENTITY, turned);
     let context = InspectorContext { entities_with: &entities_with, folder: &folder, eye_from_scene: turned };
     let mut changes = Changes::new();
-    for (type_id, component) in of_entity(world, entity, registry) {
+    for (written, component) in of_entity(world, entity, registry) {
         if let Some(light) = component.downcast_ref::<DirectionalLight>()
             && let Some(turned) =
                 light_direction(ui, &format!("direction of {name}"), light.direction, turned)
         {
             let value = Box::new(turned.direction);
-            changes
-                .push((type_id, vec![Edited { path: "direction".into(), value, finished: turned.finished }]));
+            let turned = Edited { path: "direction".into(), value, finished: turned.finished };
+            changes.push((written.to_owned(), vec![turned]));
         }
         let edits = match component.downcast_ref::<TransferFunction>() {
             Some(function) => transfer_function(ui, world, entity, (&name, function), registry, editors),
             None => inspect(ui, &name, component, registry, &context),
         };
-        changes.push((type_id, edits));
+        changes.push((written.to_owned(), edits));
     }
     changes
 }
@@ -116,19 +115,19 @@ fn turned(view: &View) -> Quat {
 fn of_entity<'w>(
     world: &'w World,
     entity: Entity,
-    registry: &TypeRegistry,
-) -> Vec<(TypeId, &'w dyn Reflect)> {
+    registry: &'w TypeRegistry,
+) -> Vec<(&'w str, &'w dyn Reflect)> {
     let Ok(entity) = world.get_entity(entity) else { return Vec::new() };
-    let mut all: Vec<(&str, TypeId, &dyn Reflect)> = Vec::new();
+    let mut all: Vec<(&str, &dyn Reflect)> = Vec::new();
     for registration in registry.iter() {
         let Some(component) = registration.data::<ReflectComponent>() else { continue };
         if let Some(value) = component.reflect(entity) {
             let name = registration.type_info().type_path_table().short_path();
-            all.push((name, registration.type_id(), value));
+            all.push((name, value));
         }
     }
-    all.sort_by_key(|(name, ..)| *name);
-    all.into_iter().map(|(_, type_id, value)| (type_id, value)).collect()
+    all.sort_by_key(|(name, _)| *name);
+    all
 }
 
 /// The names of the entities that have a component.
@@ -144,19 +143,11 @@ fn names_with(world: &World, registry: &TypeRegistry, component: &str) -> Vec<St
     found
 }
 
-/// Puts what was changed into the world; a value that is what it was wakes nothing.
-fn apply(world: &mut World, entity: Entity, type_id: TypeId, edits: &[Edited], registry: &TypeRegistry) {
-    let Some(component) = registry.get_type_data::<ReflectComponent>(type_id) else { return };
+/// Makes what was changed edits of the scene.
+fn apply(world: &mut World, entity: Entity, component: &str, edits: &[Edited]) {
     for edited in edits {
-        let Ok(mut entity) = world.get_entity_mut(entity) else { return };
-        let Some(old) = component.reflect(&entity) else { return };
-        let Ok(mut value) = old.reflect_clone() else { continue };
-        if let Err(error) = edited.apply(value.as_partial_reflect_mut()) {
-            log::warn!("{error}");
-            continue;
-        }
-        if old.reflect_partial_eq(value.as_partial_reflect()) != Some(true) {
-            component.insert(&mut entity, value.as_partial_reflect(), registry);
+        if let Err(error) = edit(world, entity, component, edited) {
+            tell(world, error);
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Where everything stands.
 
 use super::{
-    Command, OpenPanels, Shown, entities, log, picture, report, sections, shortcuts, status, toolbar,
+    Command, OpenPanels, Shown, conflicts, entities, leaving, log, picture, report, sections, shortcuts,
+    status, toolbar,
 };
 use bevy_ecs::prelude::*;
 use egui::{CentralPanel, Panel, Rect, Ui};
@@ -20,6 +21,7 @@ pub fn panels(ui: &mut Ui, world: &mut World, shown: &Shown) -> Laid {
     let mut commands = Vec::new();
     shortcuts::take(ui.ctx(), world, &mut commands);
     Panel::top("toolbar").show(ui, |ui| toolbar::show(ui, world, shown, &mut commands));
+    conflicts::show(ui, world);
     Panel::bottom("status").show(ui, |ui| status::show(ui, world, shown));
     let mut open = *world.get_resource_or_init::<OpenPanels>();
     Panel::bottom("log")
@@ -44,5 +46,6 @@ pub fn panels(ui: &mut Ui, world: &mut World, shown: &Shown) -> Laid {
     world.get_resource_or_init::<OpenPanels>().set_if_neq(open);
     let centre =
         CentralPanel::no_frame().show(ui, |ui| picture::show(ui, world, shown, open.axes, &mut commands));
+    leaving::show(ui, world, &mut commands);
     Laid { picture: centre.inner, commands }
 }

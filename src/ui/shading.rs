@@ -1,5 +1,6 @@
 //! Scattering on and off, for everything or for one entity, and two shadings side by side.
 
+use super::edit::{shade, tell, with_edits};
 use crate::components::{SceneSettings, Shading, Subsurface, VolumeLighting};
 use crate::view::{Comparison, Split};
 use bevy_ecs::prelude::*;
@@ -21,11 +22,17 @@ fn scatters(world: &World, entity: Entity) -> bool {
 
 /// The head of the scene.
 fn of_everything(ui: &mut Ui, world: &mut World) {
-    let mut settings = world.get_resource_or_init::<SceneSettings>();
-    let mut on = settings.shading == Shading::Scattering;
+    let now = world.get_resource_or_init::<SceneSettings>().shading;
+    let mut on = now == Shading::Scattering;
     let text = "What entities without a `Shading` of their own do. Off, each takes the local model beside its scattering technique";
-    if ui.checkbox(&mut on, "Scattering in the scene").on_hover_text(text).changed() {
-        settings.shading = if on { Shading::Scattering } else { Shading::Local };
+    if !ui.checkbox(&mut on, "Scattering in the scene").on_hover_text(text).changed() {
+        return;
+    }
+    let shading = if on { Shading::Scattering } else { Shading::Local };
+    match with_edits(world, |edits, world| edits.set_setting(world, "shading", &shading)) {
+        Some(Ok(())) => {}
+        Some(Err(error)) => tell(world, error.to_string()),
+        None => world.resource_mut::<SceneSettings>().shading = shading,
     }
 }
 
@@ -41,14 +48,10 @@ fn of_entity(ui: &mut Ui, world: &mut World, entity: Entity) {
         ui.selectable_value(&mut wanted, Some(Shading::Local), "local")
             .on_hover_text("`Shading: Local`, whatever the scene's head says");
     });
-    match wanted {
-        _ if wanted == now => {}
-        Some(shading) => {
-            world.entity_mut(entity).insert(shading);
-        }
-        None => {
-            world.entity_mut(entity).remove::<Shading>();
-        }
+    if wanted != now
+        && let Err(error) = shade(world, entity, wanted)
+    {
+        tell(world, error);
     }
 }
 

@@ -1,4 +1,4 @@
-//! What keys do wherever the focus is, except in a field of text.
+//! What keys do wherever the focus is; in a field of text, those that mean something there are left to it.
 
 use super::shading::START;
 use super::{Axis, Command, PictureFile, Selection};
@@ -7,17 +7,27 @@ use bevy_ecs::prelude::*;
 use egui::{Context, Key, Modifiers};
 
 pub(super) fn take(context: &Context, world: &mut World, commands: &mut Vec<Command>) {
+    let pressed =
+        |modifiers: Modifiers, key: Key| context.input_mut(|input| input.consume_key(modifiers, key));
+    if pressed(Modifiers::COMMAND, Key::S) {
+        commands.push(Command::Save);
+    }
     if context.text_edit_focused() {
         return;
     }
-    let pressed =
-        |modifiers: Modifiers, key: Key| context.input_mut(|input| input.consume_key(modifiers, key));
     // Those with modifiers first: without, others may be held.
     if pressed(Modifiers::SHIFT, Key::F) {
         commands.push(Command::Frame(world.get_resource_or_init::<Selection>().0));
     }
     if pressed(Modifiers::SHIFT, Key::F12) {
         commands.push(Command::Screenshot(PictureFile::Exr));
+    }
+    let redo = [(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z), (Modifiers::COMMAND, Key::Y)];
+    if redo.into_iter().any(|(modifiers, key)| pressed(modifiers, key)) {
+        commands.push(Command::Redo);
+    }
+    if pressed(Modifiers::COMMAND, Key::Z) {
+        commands.push(Command::Undo);
     }
     if pressed(Modifiers::COMMAND, Key::Q) {
         commands.push(Command::Quit);

@@ -2,6 +2,7 @@
 
 use super::shading::START;
 use super::{Axis, Command, OpenPanels, PictureFile, Shown};
+use crate::scene::Edits;
 use crate::view::Comparison;
 use bevy_ecs::prelude::*;
 use egui::Ui;
@@ -10,6 +11,7 @@ pub(super) fn show(ui: &mut Ui, world: &mut World, shown: &Shown, commands: &mut
     ui.horizontal_wrapped(|ui| {
         camera(ui, shown, commands);
         ui.separator();
+        edits(ui, world, commands);
         compare(ui, world);
         ui.separator();
         ui.menu_button("Screenshot", |ui| {
@@ -61,6 +63,35 @@ fn camera(ui: &mut Ui, shown: &Shown, commands: &mut Vec<Command>) {
     if reset.on_hover_text("Go back to the camera that the scene says (Home)").clicked() {
         commands.push(Command::ResetCamera);
     }
+}
+
+/// What can be done with edits, where the scene can be edited.
+fn edits(ui: &mut Ui, world: &World, commands: &mut Vec<Command>) {
+    let Some(edits) = world.get_resource::<Edits>() else { return };
+    let steps = [
+        ("Undo", edits.next_undo(), Command::Undo, "Take back the change of", "Ctrl+Z"),
+        ("Redo", edits.next_redo(), Command::Redo, "Make again the change of", "Ctrl+Shift+Z or Ctrl+Y"),
+    ];
+    for (name, step, command, what, keys) in steps {
+        let button = ui.add_enabled(step.is_some(), egui::Button::new(name));
+        let subject = step.unwrap_or_default();
+        let button = button.on_hover_text(format!("{what} {subject} ({keys})"));
+        if button.on_disabled_hover_text(format!("Nothing to {} ({keys})", name.to_lowercase())).clicked() {
+            commands.push(command);
+        }
+    }
+    let is_unsaved = edits.is_unsaved();
+    let save = ui.add_enabled(is_unsaved, egui::Button::new("Save"));
+    let save = save.on_hover_text(
+        "Write what was changed to the files that it came from; the rest of them stays as it is (Ctrl+S)",
+    );
+    if save.on_disabled_hover_text("All is saved (Ctrl+S)").clicked() {
+        commands.push(Command::Save);
+    }
+    if is_unsaved {
+        ui.weak("not saved").on_hover_text("The scene is shown with changes that its files do not have yet");
+    }
+    ui.separator();
 }
 
 fn compare(ui: &mut Ui, world: &mut World) {

@@ -8,6 +8,7 @@ use crate::ui::{Level, Log, OpenPanels};
 use bevy_app::App;
 use egui_winit::accesskit_winit;
 use glam::UVec2;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
@@ -82,6 +83,8 @@ struct Open {
     due: Option<Instant>,
     /// Frames in a row that could not be shown.
     failed: u32,
+    /// Whether the title says that edits are not saved.
+    says_unsaved: bool,
 }
 
 impl ApplicationHandler<Wake> for Program {
@@ -97,7 +100,8 @@ impl ApplicationHandler<Wake> for Program {
         let Some(open) = &mut self.open else { return };
         let response = open.state.on_window_event(&open.window, &event);
         match event {
-            WindowEvent::CloseRequested => events.exit(),
+            WindowEvent::CloseRequested if open.session.may_quit() => events.exit(),
+            WindowEvent::CloseRequested => open.window.request_redraw(),
             WindowEvent::RedrawRequested => match open.redraw() {
                 Ok(true) => events.exit(),
                 Ok(false) => {}
@@ -197,7 +201,7 @@ impl Open {
         window.set_visible(true);
         window.request_redraw();
         let painter = surface.painter(&gpu);
-        Ok(Self { window, surface, painter, gpu, state, session, due: None, failed: 0 })
+        Ok(Self { window, surface, painter, gpu, state, session, due: None, failed: 0, says_unsaved: false })
     }
 
     /// Shows a frame, and says whether it was the last.
@@ -209,6 +213,7 @@ impl Open {
         let started = Instant::now();
         let input = self.state.take_egui_input(&self.window);
         let mut frame = self.session.frame(input, self.painter.picture());
+        self.set_title();
         let platform = std::mem::take(&mut frame.output.platform_output);
         self.state.handle_platform_output(&self.window, platform);
         let drawn = started.elapsed();
@@ -236,6 +241,16 @@ impl Open {
         self.failed = if is_shown { 0 } else { self.failed + 1 };
         self.plan(if is_shown { frame.next } else { Some(RETRY * self.failed.min(10)) });
         Ok(frame.quit)
+    }
+
+    /// Marks the title of a scene with edits that are not saved.
+    fn set_title(&mut self) {
+        let is_unsaved = self.session.is_unsaved();
+        if is_unsaved != self.says_unsaved {
+            let mark = if is_unsaved { "* " } else { "" };
+            self.window.set_title(&format!("{mark}{}", title(self.session.scene())));
+            self.says_unsaved = is_unsaved;
+        }
     }
 
     fn plan(&mut self, next: Option<Duration>) {
@@ -275,11 +290,10 @@ fn attributes(
     options: &WindowOptions,
     remembered: &Remembered,
 ) -> winit::window::WindowAttributes {
-    let name = options.session.scene.path().file_name().unwrap_or_default().to_string_lossy();
     let asked = options.size.map(|size| PhysicalSize::new(size.x, size.y));
     let before = remembered.size.map(|(width, height)| PhysicalSize::new(width, height));
     let attributes = Window::default_attributes()
-        .with_title(format!("{name} – Tyndall"))
+        .with_title(title(options.session.scene.path()))
         .with_visible(false)
         .with_inner_size(asked.unwrap_or_else(|| within_screen(events, before.unwrap_or(SIZE))))
         .with_min_inner_size(SMALLEST)
@@ -288,6 +302,10 @@ fn attributes(
         Some((x, y)) => attributes.with_position(PhysicalPosition::new(x, y)),
         None => attributes,
     }
+}
+
+fn title(scene: &Path) -> String {
+    format!("{} – Tyndall", scene.file_name().unwrap_or_default().to_string_lossy())
 }
 
 /// A size that fits on the screen, which may be another than the one of last time.

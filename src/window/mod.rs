@@ -10,6 +10,7 @@
 //! drive the very code that [`run`] drives from a real window. [`Painter`] puts panels and picture on a texture, on the device that draws the
 //! scene, so that no pixel leaves the GPU.
 
+mod edits;
 mod error;
 mod event_loop;
 mod files;

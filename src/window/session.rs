@@ -2,6 +2,7 @@
 
 mod draw;
 
+use super::edits;
 use super::files::{self, told};
 use super::orbit::Orbit;
 use super::pace::Pace;
@@ -70,8 +71,9 @@ pub struct Frame {
 impl Session {
     /// Takes over an app into which the scene has been read and which has a [`Gpu`].
     pub fn new(mut app: App, options: SessionOptions) -> Self {
-        let SessionOptions { scene, camera, screenshots, tell } = options;
+        let SessionOptions { mut scene, camera, screenshots, tell } = options;
         ui::init(app.world_mut());
+        scene.allow_edits(&mut app);
         let folder = scene.path().parent().unwrap_or("".as_ref()).to_owned();
         app.insert_resource(ui::SceneFolder(folder));
         app.insert_resource(Picture { camera, ..Default::default() });
@@ -114,6 +116,11 @@ impl Session {
         self.app.world_mut()
     }
 
+    /// Where the scene is.
+    pub fn scene(&self) -> &std::path::Path {
+        self.scene.path()
+    }
+
     /// What lays out the panels.
     pub fn context(&self) -> &egui::Context {
         &self.context
@@ -150,6 +157,16 @@ impl Session {
         true
     }
 
+    /// Whether the window may be closed. Where edits would be lost, the panels ask what is to become of them, and answer by [`Frame::quit`].
+    pub fn may_quit(&mut self) -> bool {
+        edits::may_quit(self.app.world_mut())
+    }
+
+    /// Whether the scene is shown with edits that its files do not have yet.
+    pub fn is_unsaved(&self) -> bool {
+        edits::is_unsaved(self.app.world())
+    }
+
     /// Has `wake` called whenever [`Self::poll`] has something to do.
     pub fn on_change(&self, wake: Box<dyn Fn() + Send>) {
         self.scene.on_change(wake);
@@ -162,13 +179,18 @@ impl Session {
         self.shown.texture = Some(texture);
         let (output, laid) = self.lay_out(input);
         let size = self.size_of(&laid, output.pixels_per_point);
-        let quit = laid.commands.contains(&Command::Quit);
-        self.obey(laid.commands, size);
+        let is_editing = laid.commands.iter().any(Command::concerns_edits);
+        let is_saving =
+            laid.commands.iter().any(|command| matches!(command, Command::Save | Command::SaveAndQuit));
+        let quit = self.obey(laid.commands, size);
+        if is_saving {
+            self.scene.was_saved(&mut self.app);
+        }
         let before = (self.shown.pixels, self.shown.took, self.shown.is_coarse, self.shown.refined);
         let next = self.draw_if_due(size);
         let after = (self.shown.pixels, self.shown.took, self.shown.is_coarse, self.shown.refined);
         // What the panels say of the picture is to be that of this one.
-        let next = if before == after { next } else { Some(Duration::ZERO) };
+        let next = if before == after && !is_editing { next } else { Some(Duration::ZERO) };
         let animation =
             output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |root| root.repaint_delay);
         let animation = (animation < Duration::from_secs(3600)).then_some(animation);
@@ -213,7 +235,9 @@ impl Session {
         UVec2::new(pixels(laid.picture.width()), pixels(laid.picture.height()))
     }
 
-    fn obey(&mut self, commands: Vec<Command>, size: UVec2) {
+    /// Does what was asked for, and says whether the window is to be closed.
+    fn obey(&mut self, commands: Vec<Command>, size: UVec2) -> bool {
+        let mut quit = false;
         let world = self.app.world_mut();
         let bounds = world.resource::<SceneBounds>().0;
         let viewpoint = world.resource::<View>().viewpoint;
@@ -241,7 +265,10 @@ impl Session {
                     self.wanted.push(kind);
                     continue;
                 }
-                Command::Quit => continue,
+                _ => {
+                    quit |= edits::obey(world, &command);
+                    continue;
+                }
             }
             self.orbit = Some(orbit);
         }
@@ -249,5 +276,6 @@ impl Session {
         world.resource_mut::<FreeCamera>().set_if_neq(free);
         self.shown.is_free = self.orbit.is_some();
         self.shown.is_orthographic = self.orbit.unwrap_or(Orbit::of(&viewpoint)).is_orthographic();
+        quit
     }
 }
