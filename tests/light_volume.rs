@@ -186,7 +186,6 @@ fn slabs_reflect_and_transmit_what_they_should() {
             continue;
         }
         let sine0 = (1.0 - mu0 * mu0).sqrt();
-
         let lighting = format!("LightVolume(g: {:?})", number("g"));
         let slab = slab(&studio, 128, tau, albedo, &lighting);
         let mut fluxes = [0.0; 2];
@@ -287,7 +286,7 @@ fn light_in_a_column_is_what_its_twin_in_64_bits_says() {
         }
     }
     eprintln!("worst relative error: {worst:?}");
-    assert!(worst.0 < 0.02, "{worst:?}");
+    assert!(worst.0 < 0.005, "{worst:?}");
 }
 
 /// Optical depths of light that falls aslant through a medium whose extinction is a wave across it, as a floor behind it shows them.
@@ -314,8 +313,9 @@ fn depths_on_a_floor(studio: &mut Studio, voxels: usize) -> Vec<f64> {
         studio.radiance(&scene, 15, 9)
     };
     let (dimmed, whole) = (seen(true), seen(false));
-    // The middle row; x goes from 1.55 - 1/6 on in steps of 1/45, to the left or to the right.
+    // The middle row, by x; seen from above with z up, x goes to the left.
     (0..15)
+        .rev()
         .map(|x| -(f64::from(dimmed[4 * 15 + x][0]) / f64::from(whole[4 * 15 + x][0])).ln() / SIGMA)
         .collect()
 }
@@ -339,11 +339,8 @@ fn direct_light_is_of_second_order_in_the_voxel() {
         .into_iter()
         .map(|voxels| {
             let found = depths_on_a_floor(&mut studio, voxels);
-            let off = |found: &mut dyn Iterator<Item = &f64>| {
-                let squares = found.zip(&exact).map(|(found, exact)| (found - exact).powi(2));
-                (squares.sum::<f64>() / 15.0).sqrt()
-            };
-            off(&mut found.iter()).min(off(&mut found.iter().rev()))
+            let squares = found.iter().zip(&exact).map(|(found, exact)| (found - exact).powi(2));
+            (squares.sum::<f64>() / 15.0).sqrt()
         })
         .collect();
     eprintln!("errors with 8, 16 and 32 voxels: {errors:?}");

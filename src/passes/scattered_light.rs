@@ -91,7 +91,9 @@ impl Source {
         let axes = scene_from_texture.matrix3;
         let lengths = DVec3::new(axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length());
         let travels = (direction * lengths).normalize();
-        let axes = if blend { DVec3::ONE } else { DVec3::AXES[travels.abs().max_position()] };
+        // Light along a face does not come in through it.
+        let crossed = DVec3::select(travels.abs().cmpgt(DVec3::splat(1e-6)), DVec3::ONE, DVec3::ZERO);
+        let axes = if blend { crossed } else { DVec3::AXES[travels.abs().max_position()] };
         Self { travels, g, axes }
     }
 
