@@ -59,8 +59,6 @@ struct VolumeInstance {
     fluence_scale: f32,
     // The greatest of the phase function beside its peak.
     peak_cap: f32,
-    // 0 Post, 1 Pre, 2 PreIntegrated.
-    classification: u32,
     // What classified voxels are shares of.
     greatest_colour: f32,
     greatest_extinction: f32,
@@ -88,6 +86,11 @@ struct March {
 
 // Samples between two looks at the bricks: lanes that march together stay together.
 const RUN = 16.0;
+
+// Samples that are lit together where light is scattered often, at most, and the optical depth that is enough for them: light varies by
+// less over them than the model is off.
+const TOGETHER = 4.0;
+const DEPTH_TOGETHER = 0.3;
 
 fn start_march(index: u32, ray: Ray, surface_distance: f32) -> March {
     let origin = (volumes[index].texture_from_eye * vec4f(ray.origin, 1.0)).xyz;
@@ -196,7 +199,7 @@ fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, thinned: f32, plac
     var arriving = vec3f(0.0);
     var specular = vec3f(0.0);
     var normal: Normal;
-    if ANY_HIGHLIGHT && volume.specular > 0.0 {
+    if ANY_HIGHLIGHT {
         normal = normal_at(index, volume, place, centre, ray);
     }
     for (var i = 0u; i < LIGHTS; i += 1u) {
@@ -209,7 +212,7 @@ fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, thinned: f32, plac
         } else {
             arriving += light * (exp(-depth) / (4.0 * PI));
         }
-        if ANY_HIGHLIGHT && volume.specular > 0.0 {
+        if ANY_HIGHLIGHT {
             specular += light * exp(-depth) / PI * highlight(normal, lights[i].to_light, volume.shininess, ray);
         }
     }
@@ -276,11 +279,14 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
         if nearest == FAR {
             break;
         }
-        let volume = volumes[min(index, VOLUMES - 1u)];
+        var volume = volumes[min(index, VOLUMES - 1u)];
+        volume.lighting = lighting_of(index, volume.lighting);
         let enter = marches[index].enter;
         let leave = marches[index].leave;
         let count = marches[index].count;
-        let integrated = ANY_PRE_INTEGRATED && volume.classification == PRE_INTEGRATED;
+        let classification = classification_of(index);
+        let integrated = ANY_PRE_INTEGRATED && classification == PRE_INTEGRATED;
+        let alone = !ANY_OFTEN || integrated || volume.lighting < 4u;
         let lookup = Lookup(f32(volume.table_entries - 1u), volume.lookup_scale, volume.lookup_offset, volume.sentinel);
         let direction = (volume.texture_from_eye * vec4f(ray.direction, 0.0)).xyz;
         let start = (volume.texture_from_eye * vec4f(ray.origin, 1.0)).xyz + direction * enter;
@@ -322,71 +328,57 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                 if done >= end {
                     break;
                 }
+                // Of the samples that are lit together: what they absorb, and their means by what each shows.
                 var length = 0.0;
                 var place = vec3f(0.0);
                 var texel = 0.0;
-                var entry = vec4f(0.0);
-                // The next sample that absorbs: where it is lit, which costs most, all lanes are to have one.
+                var colour = vec3f(0.0);
+                var depth = 0.0;
+                var alpha = 0.0;
+                var together = end;
+                // On to a sample that absorbs, and a few more where light is scattered often: to look it up costs most, and all lanes are
+                // to have something to look up.
                 loop {
                     length = min(volume.step, leave - enter - done * volume.step);
+                    var at = vec3f(0.0);
+                    var at_texel = 0.0;
+                    var found = vec4f(0.0);
                     if integrated {
                         front = back;
                         back = texel_at(index, start + direction * (done * volume.step + length));
-                        entry = pre_integrated(index, lookup, front, back, length / volume.step);
+                        found = pre_integrated(index, lookup, front, back, length / volume.step);
                     } else {
-                        place = start + direction * (done * volume.step + 0.5 * length);
-                        if ANY_PRE && volume.classification == PRE {
-                            entry = pre_classified(index, place, volume.greatest_colour, volume.greatest_extinction);
+                        at = start + direction * (done * volume.step + 0.5 * length);
+                        if ANY_PRE && classification == PRE {
+                            found = pre_classified(index, at, volume.greatest_colour, volume.greatest_extinction);
                         } else {
-                            texel = texel_at(index, place);
-                            entry = look_up(index, lookup, texel);
+                            at_texel = texel_at(index, at);
+                            found = look_up(index, lookup, at_texel);
                         }
                     }
-                    done += 1.0;
-                    samples += 1.0;
-                    if !ANY_LIT || entry.a > 0.0 || done >= end {
-                        break;
-                    }
-                }
-                var depth = entry.a * select(volume.reach * length, 1.0, integrated);
-                // Where light is scattered often it is looked up for two samples at once, at their mean place by what each shows: that costs more
-                // than all else, and is off by less than the model is. (A loop of one turn: software
-                // adapters run both sides of every `if`.)
-                loop {
-                    if !ANY_OFTEN || integrated || volume.lighting < 4u || done >= end {
-                        break;
-                    }
-                    let more_length = min(volume.step, leave - enter - done * volume.step);
-                    let next = start + direction * (done * volume.step + 0.5 * more_length);
-                    var next_texel = 0.0;
-                    var found = vec4f(0.0);
-                    if ANY_PRE && volume.classification == PRE {
-                        found = pre_classified(index, next, volume.greatest_colour, volume.greatest_extinction);
-                    } else {
-                        next_texel = texel_at(index, next);
-                        found = look_up(index, lookup, next_texel);
-                    }
-                    let more = found.a * volume.reach * more_length;
-                    let near = absorbed(depth);
-                    let far = (1.0 - near) * absorbed(more);
-                    let part = far / max(near + far, 1e-30);
-                    entry = vec4f(mix(entry.rgb, found.rgb, part), entry.a);
-                    place = mix(place, next, part);
-                    texel = mix(texel, next_texel, part);
+                    let more = found.a * select(volume.reach * length, 1.0, integrated);
+                    let shown = (1.0 - alpha) * absorbed(more);
+                    alpha += shown;
+                    let part = shown / max(alpha, 1e-30);
+                    colour = mix(colour, found.rgb, part);
+                    place = mix(place, at, part);
+                    texel = mix(texel, at_texel, part);
+                    together = select(together, min(end, done + TOGETHER), depth == 0.0);
                     depth += more;
                     done += 1.0;
                     samples += 1.0;
-                    break;
+                    let is_enough = alone || depth > DEPTH_TOGETHER || done >= together;
+                    if !ANY_LIT || done >= end || (depth > 0.0 && is_enough) {
+                        break;
+                    }
                 }
-                let alpha = absorbed(depth);
-                let thinned = thinning(volume, entry.rgb);
-                var colour = entry.rgb;
+                let thinned = thinning(volume, colour);
                 if ANY_LIT {
                     if integrated {
                         let part = surface_in(index, lookup, front, back);
                         place = start + direction * ((done - 1.0) * volume.step + part * length);
                         texel = mix(front, back, part);
-                    } else if ANY_PRE && volume.classification == PRE {
+                    } else if ANY_PRE && classification == PRE {
                         texel = texel_at(index, place);
                     }
                     colour = source(index, volume, colour, thinned, place, texel, ray);

@@ -3,7 +3,7 @@
 
 #import classifications
 
-// As VolumeInstance.classification says.
+// What `classification_of` says of a volume; 0 is `Post`.
 const PRE = 1u;
 const PRE_INTEGRATED = 2u;
 

@@ -43,7 +43,10 @@ fn disc_of(x_o: vec3f, index: u32) -> Disc {
     let radius = min(sqrt(fade) * sqrt(fade + 2.0 * depth), estimator.radius) / narrowing;
     // Further sets of samples fill the gaps of the earlier ones (R2 sequence; Roberts 2018).
     let shift = fract(hash(vec2u(index, 0u)) + f32(estimator.pass_index) * vec2f(0.7548776662, 0.5698402910));
-    return Disc(estimator.samples, shift, core, log(1.0 + radius / core), steepest, narrowing);
+    // None at a point that is nowhere. (So the number is not the same for all points, or Lavapipe would compile the kernel anew for it and
+    // for all that it is in one buffer with, whenever a light turns.)
+    let samples = select(0u, estimator.samples, core > 0.0);
+    return Disc(samples, shift, core, log(1.0 + radius / core), steepest, narrowing);
 }
 
 // A place on the disc, and its weight: the area that it stands for.

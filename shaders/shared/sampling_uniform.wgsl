@@ -19,6 +19,8 @@ fn candidate_distance(x_o: vec3f, i: u32) -> f32 {
 
 fn disc_of(x_o: vec3f, index: u32) -> Disc {
     var reach = 1e9;
+    // None at a point that is nowhere; see sampling_adaptive.
+    let candidates = select(0u, estimator.candidates, abs(x_o.z) < 1e30);
     if !ALL_CANDIDATES {
         // The distance within which as many candidates lie as are wanted, by bisection.
         var low = 0.0;
@@ -26,7 +28,7 @@ fn disc_of(x_o: vec3f, index: u32) -> Disc {
         for (var step = 0u; step < 24u; step += 1u) {
             let middle = (low + reach) / 2.0;
             var count = 0u;
-            for (var i = 0u; i < estimator.candidates; i += 1u) {
+            for (var i = 0u; i < candidates; i += 1u) {
                 count += select(0u, 1u, candidate_distance(x_o, i) <= middle);
             }
             if count > estimator.samples {
@@ -36,7 +38,7 @@ fn disc_of(x_o: vec3f, index: u32) -> Disc {
             }
         }
     }
-    return Disc(estimator.candidates, reach, x_o);
+    return Disc(candidates, reach, x_o);
 }
 
 // A place on the disc, and its weight: the area that it stands for.

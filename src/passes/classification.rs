@@ -5,7 +5,7 @@ use crate::gpu::binding;
 use std::fmt::Write;
 
 /// What a shader calls each classification.
-pub(crate) fn number(classification: Classification) -> u32 {
+fn number(classification: Classification) -> u32 {
     match classification {
         Classification::Post => 0,
         Classification::Pre => 1,
@@ -23,7 +23,7 @@ pub(crate) fn bindings(classifications: &[Classification]) -> Vec<wgpu::BindingT
     classifications.iter().filter_map(kind).collect()
 }
 
-/// The WGSL module `classifications`: those textures from a binding on, and functions that read that of a volume. Where no volume has
+/// The WGSL module `classifications`: how each volume is classified, those textures from a binding on, and functions that read that of a volume. Where no volume has
 /// such a texture a constant says so, and the shader is what it would be without.
 pub(crate) fn module(classifications: &[Classification], first_binding: usize) -> String {
     let has = |classification| classifications.contains(&classification);
@@ -50,10 +50,15 @@ pub(crate) fn module(classifications: &[Classification], first_binding: usize) -
             writeln!(text, "@group(0) @binding({binding}) var pairs_{volume}: texture_2d<f32>;")
         };
     }
+    let mut kinds = String::new();
+    for (volume, classification) in classifications.iter().enumerate() {
+        let _ = writeln!(kinds, "        case {volume}u: {{ return {}u; }}", number(*classification));
+    }
     let nothing = "        default: { return vec4f(0.0); }\n";
     let _ = write!(
         text,
-        "fn voxels_at(volume: u32, place: vec3f) -> vec4f {{\n    switch volume {{\n{pre}{nothing}    }}\n}}\n\
+        "fn classification_of(volume: u32) -> u32 {{\n    switch volume {{\n{kinds}        default: {{ return 0u; }}\n    }}\n}}\n\
+         fn voxels_at(volume: u32, place: vec3f) -> vec4f {{\n    switch volume {{\n{pre}{nothing}    }}\n}}\n\
          fn pair_at(volume: u32, place: vec2u) -> vec4f {{\n    switch volume {{\n{pairs}{nothing}    }}\n}}\n"
     );
     text

@@ -32,12 +32,19 @@ pub(crate) struct Kinds {
     towards_eye: bool,
     /// Highlights in scattered light.
     highlights: bool,
+    /// The lighting of each volume, where it is the same in all parts of the picture.
+    of_volumes: Vec<Option<u32>>,
 }
 
 impl Kinds {
-    pub(super) fn of(volumes: impl IntoIterator<Item = Lit>, lights: u32) -> Self {
-        let mut kinds = Self::default();
-        for lit in volumes {
+    /// For volumes, each as it is lit in every part of the picture.
+    pub(super) fn of(volumes: Vec<Vec<Lit>>, lights: u32) -> Self {
+        let alone = |parts: &Vec<Lit>| {
+            let first = parts.first()?.kind;
+            parts.iter().all(|lit| lit.kind == first).then_some(first)
+        };
+        let mut kinds = Self { of_volumes: volumes.iter().map(alone).collect(), ..Default::default() };
+        for lit in volumes.into_iter().flatten() {
             let once = lit.kind == SCATTERS_ONCE;
             let often = [SCATTERS, SCATTERS_TOWARDS_EYE].contains(&lit.kind);
             kinds.lit |= lit.kind != EMITS;
@@ -65,6 +72,7 @@ impl Kinds {
             peak: true,
             towards_eye: true,
             highlights: true,
+            of_volumes: vec![None, Some(SCATTERS)],
         }
     }
 
@@ -87,6 +95,14 @@ impl Kinds {
         }
         // A number that is known unrolls the loop over lights, which then fetches each as it is.
         let _ = writeln!(text, "const LIGHTS = {}u;", self.lights);
+        // Lavapipe compiles shaders anew for the values of uniforms that they branch on, and with them for others, which change from frame to frame.
+        let _ = writeln!(text, "fn lighting_of(volume: u32, asked: u32) -> u32 {{\n    switch volume {{");
+        for (volume, kind) in self.of_volumes.iter().enumerate() {
+            if let Some(kind) = kind {
+                let _ = writeln!(text, "        case {volume}u: {{ return {kind}u; }}");
+            }
+        }
+        text.push_str("        default: { return asked; }\n    }\n}\n");
         ("lighting", text)
     }
 }

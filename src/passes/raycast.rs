@@ -124,7 +124,6 @@ mirror! {
         first_sweep: u32,
         fluence_scale: f32,
         peak_cap: f32,
-        classification: u32,
         greatest_colour: f32,
         greatest_extinction: f32,
     }
@@ -190,11 +189,8 @@ fn run(
     }
     let timing = timer.as_mut().and_then(|timer| timer.time("raycast"));
     let parts = in_parts(&comparison, picture.size);
-    let mut all_lit = Vec::new();
-    for part in &parts {
-        all_lit.extend(volumes.iter().map(|volume| lit(volume, &settings, part.shading)));
-    }
-    let kinds = Kinds::of(all_lit, frame.light_count);
+    let lit_in = |volume| parts.iter().map(|part| lit(volume, &settings, part.shading)).collect();
+    let kinds = Kinds::of(volumes.iter().map(lit_in).collect(), frame.light_count);
     let drawn = prepare(&gpu, &picture, kinds, &volumes, &frame, &mut caster, &mut report).map(|()| {
         let of_part = |part: Part| {
             let shading = part.shading;
@@ -556,7 +552,6 @@ fn instance(
         first_sweep,
         fluence_scale: summed.map_or(0.0, |summed| summed.scale),
         peak_cap: Peak::new(f64::from(lit.g)).cap.min(f64::from(f32::MAX)) as f32,
-        classification: classification::number(classification_of(volume)),
         greatest_colour,
         greatest_extinction,
     }
