@@ -1,6 +1,6 @@
 //! How the framework is put together: stages, and the plugins of the framework itself.
 
-use crate::{components, loading, passes, render, report::Report, scene, view};
+use crate::{components, failure, loading, passes, report::Report, scene, view};
 use bevy_app::{App, First, Last, Plugin, PluginGroup, PluginGroupBuilder, Update};
 use bevy_ecs::prelude::*;
 
@@ -94,8 +94,12 @@ impl Plugin for ScenePlugin {
             .init_resource::<scene::SceneEntities>()
             .init_resource::<SceneTime>()
             .init_resource::<Report>()
-            .init_resource::<render::Failure>()
-            .add_systems(First, |mut problems: ResMut<scene::Problems>| problems.forget_update())
+            .init_resource::<failure::Failure>()
+            .add_systems(
+                First,
+                (failure::retry, |mut problems: ResMut<scene::Problems>| problems.forget_update()),
+            )
+            .add_systems(Last, failure::mark)
             .add_systems(Last, scene::watch_assets.run_if(resource_exists::<scene::AssetWatch>))
             .add_systems(Update, (components::place, components::aim).in_set(Stage::Place));
     }

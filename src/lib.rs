@@ -74,9 +74,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 mod app;
+mod changes;
 pub mod cli;
 pub mod components;
 pub mod cpu;
+mod failure;
 pub mod gpu;
 pub mod loading;
 pub mod mirrors;

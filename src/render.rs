@@ -1,7 +1,8 @@
 //! A loaded scene becomes a picture in memory.
 
+use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, PassTimer, read_texture};
-use crate::passes::{raycast::RayCaster, surface::Surface, tonemap::Tonemap};
+use crate::passes::{products, raycast::RayCaster, surface::Surface, tonemap::Tonemap};
 use crate::report::Report;
 use crate::scene::{self, EntityProblems, Override, Problem, Problems, SceneDocument, Severity};
 use crate::view::Picture;
@@ -10,24 +11,6 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::AppTypeRegistry;
 use std::path::Path;
 use std::time::Instant;
-
-/// The first failure of a pass in this frame.
-#[derive(Resource, Debug, Default)]
-pub(crate) struct Failure(Option<GpuError>);
-
-impl Failure {
-    /// Keeps an error, unless an earlier one is there: what follows is often only its consequence.
-    pub fn keep(&mut self, result: Result<(), GpuError>) {
-        if let (None, Err(error)) = (&self.0, result) {
-            self.0 = Some(error);
-        }
-    }
-
-    /// The failure, which counts as told then.
-    pub fn take(&mut self) -> Option<GpuError> {
-        self.0.take()
-    }
-}
 
 /// A picture in memory, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,10 +119,30 @@ pub fn render_what_is_there(app: &mut App) -> Result<Image, GpuError> {
     finish(app.world_mut())
 }
 
+/// Opens another device if the one that the world is drawn with is gone, and says why it was. The scene stays; what was on the device is made
+/// again by the updates that follow, from files that are read again where need be.
+///
+/// # Errors
+///
+/// If there is no other device.
+pub fn recover(world: &mut World) -> Result<Option<String>, GpuError> {
+    let gpu = world.get_resource::<Gpu>().ok_or(GpuError::Missing)?;
+    let Some(reason) = gpu.lost().map(str::to_owned) else { return Ok(None) };
+    log::warn!("the graphics device was lost ({reason}); another is opened");
+    let another = pollster::block_on(Gpu::new(&gpu.options))?;
+    replace_device(world, another);
+    Ok(Some(reason))
+}
+
+/// Has the world drawn with another device.
+pub(crate) fn replace_device(world: &mut World, gpu: Gpu) {
+    products::forget_device(world);
+    world.resource_mut::<Failure>().forget();
+    world.insert_resource(gpu);
+}
+
 fn update(app: &mut App) -> Result<(), GpuError> {
-    if !app.world().contains_resource::<Gpu>() {
-        return Err(GpuError::Missing);
-    }
+    recover(app.world_mut())?;
     if app.world().resource::<Report>().measure && !app.world().contains_resource::<PassTimer>() {
         let timer = PassTimer::new(app.world().resource::<Gpu>());
         timer.map(|timer| app.insert_resource(timer));

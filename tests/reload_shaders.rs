@@ -1,45 +1,19 @@
-//! Shaders that change while they are used. `TYNDALL_SHADERS` belongs to the process, so each test runs itself again with it set.
+//! Shaders that change while they are used.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 #[path = "support/files.rs"]
 mod files;
+#[path = "support/own_shaders.rs"]
+mod own_shaders;
 
 use files::{Live, mark};
 use glam::UVec2;
+use own_shaders::with_own_shaders;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 use tyndall::prelude::*;
 use tyndall::render::{Pixels, render_what_is_there};
 use tyndall::scene::Reload;
-
-/// Says to a test that it is the one run again.
-const AGAIN: &str = "TYNDALL_TEST_AGAIN";
-
-/// Runs a test in a process whose shaders are in a folder of their own.
-fn with_own_shaders(test: &str, run: impl FnOnce(&Path)) {
-    if std::env::var_os(AGAIN).is_some() {
-        return run(&PathBuf::from(std::env::var_os("TYNDALL_SHADERS").unwrap()));
-    }
-    let folder = tempfile::tempdir().unwrap();
-    let shaders = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
-    for sub in ["", "shared"] {
-        fs::create_dir_all(folder.path().join(sub)).unwrap();
-        for entry in fs::read_dir(shaders.join(sub)).unwrap().map(Result::unwrap) {
-            if entry.path().is_file() {
-                fs::copy(entry.path(), folder.path().join(sub).join(entry.file_name())).unwrap();
-            }
-        }
-    }
-    let again = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", test, "--nocapture"])
-        .env("TYNDALL_SHADERS", folder.path())
-        .env(AGAIN, "yes")
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&again.stdout).into_owned() + &String::from_utf8_lossy(&again.stderr);
-    assert!(again.status.success() && text.contains("1 passed"), "{text}");
-}
 
 struct Shaders<'a> {
     folder: &'a Path,

@@ -99,6 +99,17 @@ impl Screen {
         }
     }
 
+    /// Loses the device, and goes on with another.
+    fn lose_device(&mut self) {
+        self.gpu.device.destroy();
+        self.gpu.device.poll(wgpu::PollType::Poll).unwrap();
+        assert!(self.gpu.lost().is_some());
+        self.gpu = pollster::block_on(Gpu::new(&self.gpu.options)).unwrap();
+        self.target = Target::new(&self.gpu, "screen", SIZE, wgpu::TextureFormat::Rgba8Unorm).unwrap();
+        self.painter = Painter::new(&self.gpu, wgpu::TextureFormat::Rgba8Unorm);
+        self.session.replace_device(self.gpu.clone());
+    }
+
     fn scene(&self) -> PathBuf {
         self.folder.path().join("scene.ron")
     }
@@ -486,6 +497,31 @@ fn any_size_of_window_is_drawn() {
     }
     screen.settle();
     assert!(screen.colour(0.0, 0.0)[0] > 60.0, "{:?}", screen.colour(0.0, 0.0));
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn a_lost_device_takes_nothing_with_it() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    screen.set("Phong.diffuse", glam::Vec3::new(0.0, 0.8, 0.0));
+    screen.settle();
+    screen.drag(vec2(30.0, 10.0), |_| {});
+    screen.settle();
+    // All but the line below, which says how long the picture took.
+    let shown = |screen: &Screen| {
+        let mut pixels = read_texture(&screen.gpu, &screen.target.texture).unwrap();
+        pixels.truncate(4 * SIZE.x as usize * (SIZE.y as usize - 24));
+        pixels
+    };
+    let before = shown(&screen);
+    for _ in 0..2 {
+        screen.lose_device();
+        screen.settle();
+        // Panels and their text, the view, the edit that no file has.
+        assert!(before == shown(&screen));
+        assert!(screen.session.is_unsaved());
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 use super::GpuError;
 use super::live::ShaderChanges;
 use bevy_ecs::prelude::Resource;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// The adapter, its device and what it can do. Clones share the device.
 #[derive(Resource, Clone, Debug)]
@@ -12,7 +12,19 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// Who the adapter is.
     pub info: wgpu::AdapterInfo,
+    /// How the device was chosen.
+    pub options: GpuOptions,
     pub(super) shader_changes: Arc<ShaderChanges>,
+    faults: Arc<Faults>,
+}
+
+/// What the driver says without having been asked.
+#[derive(Debug, Default)]
+struct Faults {
+    /// Why the device is gone.
+    lost: OnceLock<String>,
+    /// The first error that no [`Gpu::attempt`] was there for.
+    unexpected: Mutex<Option<String>>,
 }
 
 /// How to choose the device.
@@ -73,7 +85,42 @@ impl Gpu {
         let opened = adapter.request_device(&descriptor).await;
         let (device, queue) = opened
             .map_err(|error| GpuError::NoDevice { adapter: info.name.clone(), reason: error.to_string() })?;
-        Ok(Self { device, queue, info, shader_changes: Arc::default() })
+        let faults = Arc::<Faults>::default();
+        let lost = faults.clone();
+        // Only the first reason is one.
+        device.set_device_lost_callback(move |_, reason| _ = lost.lost.set(reason));
+        let unexpected = faults.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            log::error!("{error}");
+            let mut kept = unexpected.unexpected.lock().unwrap_or_else(PoisonError::into_inner);
+            kept.get_or_insert_with(|| error.to_string());
+        }));
+        Ok(Self { device, queue, info, options: options.clone(), shader_changes: Arc::default(), faults })
+    }
+
+    /// Why the device is gone, if it is. Nothing can be done with it then but to open another: see
+    /// [`recover`](crate::render::recover).
+    pub fn lost(&self) -> Option<&str> {
+        self.faults.lost.get().map(String::as_str)
+    }
+
+    /// Does something, and takes what the driver has against it, running out of memory above all, for its error.
+    ///
+    /// # Errors
+    ///
+    /// That of the work itself, else what the driver says.
+    pub fn attempt<T>(&self, doing: &str, work: impl FnOnce() -> Result<T, GpuError>) -> Result<T, GpuError> {
+        use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
+        let scopes = [Internal, Validation, OutOfMemory].map(|filter| self.device.push_error_scope(filter));
+        let done = work();
+        // The last scope opened is the first to close. Running out of memory makes what follows invalid, so it comes first.
+        let errors: Vec<_> =
+            scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
+        let done = done?;
+        match errors.first() {
+            Some(error) => Err(GpuError::Driver { doing: doing.into(), reason: error.to_string() }),
+            None => Ok(done),
+        }
     }
 
     /// Whether the device has a feature.
@@ -87,11 +134,16 @@ impl Gpu {
     }
 
     /// Waits until all work handed in so far is done.
+    ///
+    /// # Errors
+    ///
+    /// If the driver fails, or has said since the last time that something did.
     pub fn wait(&self, doing: &str) -> Result<(), GpuError> {
+        let failed = |reason| GpuError::Driver { doing: doing.into(), reason };
         let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
-        waited
-            .map(|_| ())
-            .map_err(|error| GpuError::Driver { doing: doing.into(), reason: error.to_string() })
+        waited.map_err(|error| failed(error.to_string()))?;
+        let mut unexpected = self.faults.unexpected.lock().unwrap_or_else(PoisonError::into_inner);
+        unexpected.take().map_or(Ok(()), |reason| Err(failed(reason)))
     }
 }
 

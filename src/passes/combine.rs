@@ -8,11 +8,11 @@ use super::light_gbuffer::LightViews;
 use super::scattered_radiosity::ScatteredRadiosity;
 use super::surface_points::SurfacePoints;
 use crate::components::DirectionalLight;
+use crate::failure::Failure;
 use crate::gpu::{
     Gpu, GpuError, Invocations, Kernel, KernelDescriptor, PassTimer, binding, storage, storage_of,
     uniform_buffer,
 };
-use crate::render::Failure;
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
 use glam::{Vec3, Vec4};
@@ -64,6 +64,9 @@ pub(crate) fn run(
 ) {
     let mut held = 0;
     for (entity, points, views, layers, mut radiosity) in &mut bodies {
+        if failure.stands_on(entity) {
+            continue;
+        }
         let irradiance = |light: Entity| lights.get(light).map_or(Vec3::ZERO, |light| light.irradiance);
         let irradiances: Vec<Vec3> = match layers.is_shared {
             true => vec![Vec3::ONE],
@@ -79,18 +82,11 @@ pub(crate) fn run(
             _ => new.insert(Radiosity { points: storage(&gpu, "combine", size), made: (0, Vec::new()) }),
         };
         let timing = timer.as_mut().and_then(|timer| timer.time_compute("combine"));
-        match draw(
-            &gpu,
-            &mut combiner,
-            points.count,
-            &made.1,
-            &layers.layers,
-            &kept.points,
-            timing,
-            &mut report,
-        ) {
+        let points = (points.count, &kept.points);
+        let drawn = || draw(&gpu, &mut combiner, points, &made.1, &layers.layers, timing, &mut report);
+        match gpu.attempt("combine", drawn) {
             Ok(()) => kept.made = made,
-            Err(error) => failure.keep(Err(error)),
+            Err(error) => failure.on(entity, "combine", "Subsurface", error),
         }
         if let Some(new) = new {
             commands.entity(entity).insert(new);
@@ -103,10 +99,9 @@ pub(crate) fn run(
 fn draw(
     gpu: &Gpu,
     combiner: &mut Combiner,
-    points: u32,
+    (points, radiosity): (u32, &wgpu::Buffer),
     irradiances: &[Vec3],
     layers: &wgpu::Buffer,
-    radiosity: &wgpu::Buffer,
     timing: Option<wgpu::ComputePassTimestampWrites>,
     report: &mut Report,
 ) -> Result<(), GpuError> {

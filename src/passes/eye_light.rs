@@ -11,13 +11,13 @@ use super::light_volume::{LightVolume, LightVolumes, lighting_in_force, lookup, 
 use super::summed_light::SummedLight;
 use super::volume_shadow::{self, VolumeShadow, VolumeShadows};
 use crate::components::{Placement, Projection, SceneSettings, Shading, VolumeLighting};
+use crate::failure::Failure;
 use crate::gpu::{
     Gpu, GpuError, Grid, Kernel, KernelDescriptor, PassTimer, binding, storage, storage_of, uniform_buffer,
     uniform_each,
 };
 use crate::loading::LoadedVolume;
 use crate::optics::phase::henyey_greenstein;
-use crate::render::Failure;
 use crate::view::View;
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
@@ -96,6 +96,9 @@ pub(crate) fn run(
     for (entity, loaded, placement, lighting, shading, cells, light_volumes, summed, shadows, kept) in
         &volumes
     {
+        if failure.stands_on(entity) {
+            continue;
+        }
         let lighting = lighting_in_force(lighting, shading, &settings);
         let is_wanted =
             matches!(lighting, VolumeLighting::LightVolume { towards_eye: true, g, .. } if g > 0.0);
@@ -112,21 +115,14 @@ pub(crate) fn run(
             continue;
         }
         let timing = timer.as_deref_mut();
-        match sweep(
-            &gpu,
-            &mut sweeper,
-            cells,
-            (&light_volumes.0, &shadows),
-            summed,
-            &recipe,
-            timing,
-            &mut report,
-        ) {
+        let lights = (light_volumes.0.as_slice(), shadows.as_slice());
+        let swept = || sweep(&gpu, &mut sweeper, cells, lights, summed, &recipe, timing, &mut report);
+        match gpu.attempt("eye_light", swept) {
             Ok(grid) => {
                 held += grid.bytes();
                 commands.entity(entity).insert(EyeLight { grid, recipe });
             }
-            Err(error) => failure.keep(Err(error)),
+            Err(error) => failure.on(entity, "eye_light", "VolumeLighting", error),
         }
     }
     report.hold("eye_light", held);

@@ -8,9 +8,9 @@ use super::light_volume::lighting_in_force;
 use super::light_volume::medium::{Medium, MediumKernels};
 use super::upload::VolumeTexture;
 use crate::components::{SceneSettings, Shading, VolumeLighting};
+use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, Grid, Invocations, PassTimer, binding, uniform_buffer};
 use crate::loading::LoadedVolume;
-use crate::render::Failure;
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
 use glam::UVec3;
@@ -84,6 +84,9 @@ pub(crate) fn run(
     }
     let mut held = 0;
     for (entity, loaded, classified, texture, lighting, shading, kept) in &volumes {
+        if failure.stands_on(entity) {
+            continue;
+        }
         let lighting = lighting_in_force(lighting, shading, &settings);
         let VolumeLighting::LightVolume { resolution, .. } = lighting else {
             commands.entity(entity).remove::<LightCells>();
@@ -101,13 +104,13 @@ pub(crate) fn run(
         }
         let timing = timer.as_mut().and_then(|timer| timer.time_compute("light_cells"));
         let volume = (loaded, classified, texture);
-        match make(&gpu, &mut averager, volume, cells, timing, &mut report) {
+        match gpu.attempt("light_cells", || make(&gpu, &mut averager, volume, cells, timing, &mut report)) {
             Ok(grid) => {
                 averager.version += 1;
                 held += grid.bytes();
                 commands.entity(entity).insert(LightCells { grid, recipe, version: averager.version });
             }
-            Err(error) => failure.keep(Err(error)),
+            Err(error) => failure.on(entity, "light_cells", "VolumeLighting", error),
         }
     }
     report.hold("light_cells", held);

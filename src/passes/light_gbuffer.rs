@@ -10,9 +10,9 @@ use super::gbuffer::{FORMAT, Fit, Gbuffer, OrthographicView, seen_box};
 use super::light_volume::through::{Shading, Veils};
 use super::upload::MeshBuffers;
 use crate::components::{DirectionalLight, Motion, Placement, SceneSettings};
+use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, PassTimer, Target};
 use crate::loading::LoadedMesh;
-use crate::render::Failure;
 use crate::report::Report;
 use crate::view::lights_in_order;
 use bevy_ecs::prelude::*;
@@ -104,6 +104,9 @@ pub(crate) fn run(
     let texels = wanted.0.min(affordable).max(16);
     let mut held = 0;
     for (entity, body, buffers, placement, mesh, mut views) in &mut bodies {
+        if failure.stands_on(entity) {
+            continue;
+        }
         let mut own = LightViews::default();
         let kept = views.as_mut().map_or(&mut own, |views| views.bypass_change_detection());
         let mut old = std::mem::take(&mut kept.0);
@@ -126,21 +129,21 @@ pub(crate) fn run(
                 kept.0.push(view);
                 continue;
             }
-            let timing = timer.as_mut().and_then(|timer| timer.time("light_gbuffer"));
-            let drawn =
-                draw(&gpu, &mut gbuffer, mesh, &recipe, timing, &mut report).and_then(|(view, target)| {
-                    let scene_from_view = (view.view_from_body * body.body_from_scene).inverse();
-                    let timer = timer.as_deref_mut();
-                    dim(&gpu, &mut dimmer, target, &view, scene_from_view, &veils, timer, &mut report)
-                        .map(|target| (view, target))
-                });
-            match drawn {
+            let drawn = || {
+                let timing = timer.as_mut().and_then(|timer| timer.time("light_gbuffer"));
+                let (view, target) = draw(&gpu, &mut gbuffer, mesh, &recipe, timing, &mut report)?;
+                let scene_from_view = (view.view_from_body * body.body_from_scene).inverse();
+                let timer = timer.as_deref_mut();
+                dim(&gpu, &mut dimmer, target, &view, scene_from_view, &veils, timer, &mut report)
+                    .map(|target| (view, target))
+            };
+            match gpu.attempt("light_gbuffer", drawn) {
                 Ok((view, target)) => {
                     version.0 += 1;
                     held += target.bytes();
                     kept.0.push(LightView { light: *light, target, view, recipe, version: version.0 });
                 }
-                Err(error) => failure.keep(Err(error)),
+                Err(error) => failure.on(entity, "light_gbuffer", "Subsurface", error),
             }
         }
         if views.is_none() {

@@ -10,12 +10,12 @@ pub mod levels;
 use super::light_cells::LightCells;
 use super::light_volume::{lighting_in_force, scene_from_texture};
 use crate::components::{Auto, Placement, SceneSettings, Shading, VolumeLighting};
+use crate::failure::Failure;
 use crate::gpu::{
     Gpu, GpuError, Grid, Invocations, Kernel, KernelDescriptor, PassTimer, binding, storage, uniform_buffer,
     uniform_each,
 };
 use crate::loading::LoadedVolume;
-use crate::render::Failure;
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
 use directions::Fan;
@@ -132,13 +132,13 @@ pub(crate) fn run(
         let timing = timer.as_mut().and_then(|timer| timer.time_compute("light_network"));
         maker.version += 1;
         let version = maker.version;
-        match make(&gpu, &mut maker, cells, &recipe, timing, &mut report) {
+        match gpu.attempt("light_network", || make(&gpu, &mut maker, cells, &recipe, timing, &mut report)) {
             Ok((escape, levels)) => {
                 let network = LightNetwork { escape, levels, recipe, version };
                 held += network.bytes();
                 commands.entity(entity).insert(network);
             }
-            Err(error) => failure.keep(Err(error)),
+            Err(error) => failure.on(entity, "light_network", "VolumeLighting", error),
         }
     }
     report.hold("light_network", held);

@@ -12,9 +12,9 @@ pub mod through;
 use super::classify::Classified;
 use super::upload::VolumeTexture;
 use crate::components::{DirectionalLight, Motion, Placement, SceneSettings, Shading, VolumeLighting};
+use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, Grid, Invocations, PassTimer, binding, uniform_buffer};
 use crate::loading::LoadedVolume;
-use crate::render::Failure;
 use crate::view::lights_in_order;
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
@@ -108,6 +108,9 @@ pub(crate) fn run(
     let lights = lights_in_order(&lights);
     let mut held = 0;
     for (entity, loaded, classified, texture, placement, lighting, shading, mut kept) in &mut volumes {
+        if failure.stands_on(entity) {
+            continue;
+        }
         let lighting = lighting_in_force(lighting, shading, &settings);
         let Some(resolution) = lighting.light_resolution() else {
             if kept.is_some() {
@@ -137,14 +140,20 @@ pub(crate) fn run(
             }
             let timing = timer.as_mut().and_then(|timer| timer.time_compute("light_volume"));
             let volume = (loaded, classified, texture);
-            match make(&gpu, &mut sweeper, volume, &recipe, timing, &mut report) {
+            match gpu
+                .attempt("light_volume", || make(&gpu, &mut sweeper, volume, &recipe, timing, &mut report))
+            {
                 Ok(grid) => {
                     sweeper.version += 1;
                     held += grid.bytes();
                     all.0.push(LightVolume { light: *light, grid, sweep, recipe, version: sweeper.version });
                 }
-                Err(error) => failure.keep(Err(error)),
+                Err(error) => failure.on(entity, "light_volume", "VolumeLighting", error),
             }
+        }
+        if failure.stands_on(entity) {
+            // Rather none than that of some lights.
+            all.0.clear();
         }
         if kept.is_none() {
             commands.entity(entity).insert(own);

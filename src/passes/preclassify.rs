@@ -6,11 +6,11 @@
 use super::classify::Classified;
 use super::upload::{SENTINEL_THRESHOLD, VolumeTexture};
 use crate::components::Classification;
+use crate::failure::Failure;
 use crate::gpu::{
     Gpu, GpuError, Invocations, Kernel, KernelDescriptor, PassTimer, binding, texture_of, uniform_buffer,
 };
 use crate::loading::LoadedVolume;
-use crate::render::Failure;
 use crate::scene::{Problem, Problems};
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
@@ -54,6 +54,9 @@ pub(crate) fn preclassify(
     }
     let (mut bytes, mut changed) = (0, !orphans.is_empty());
     for (entity, classified, texture, loaded, has) in &volumes {
+        if failure.stands_on(entity) {
+            continue;
+        }
         if classified.classification != Classification::Pre {
             if has {
                 commands.entity(entity).remove::<ClassifiedVoxels>();
@@ -77,14 +80,16 @@ pub(crate) fn preclassify(
             continue;
         };
         let timing = timer.as_mut().and_then(|timer| timer.time_compute("preclassify"));
-        let made = ready(&gpu, &mut kernel, &mut report)
-            .map(|kernel| classified_voxels(&gpu, kernel, &classified, &texture, loaded.data.size, timing));
-        match made {
+        let made = || {
+            let kernel = ready(&gpu, &mut kernel, &mut report)?;
+            Ok(classified_voxels(&gpu, kernel, &classified, &texture, loaded.data.size, timing))
+        };
+        match gpu.attempt("preclassify", made) {
             Ok(voxels) => {
                 report.ran("preclassify", &[("voxels", u64::from(count))]);
                 commands.entity(entity).insert(voxels);
             }
-            Err(error) => failure.keep(Err(error)),
+            Err(error) => failure.on(entity, "preclassify", "TransferFunction.classification", error),
         }
     }
     if changed {

@@ -18,12 +18,12 @@ use super::volume_shadow::{self, VolumeShadow, VolumeShadows};
 use crate::components::{
     Classification, Placement, RayCast as RayCastSettings, SceneSettings, Shading, VolumeLighting,
 };
+use crate::failure::Failure;
 use crate::gpu::{
     Draw, DrawDescriptor, Filtering, Gpu, GpuError, PassTimer, Target, binding, texture_of, uniform_array,
 };
 use crate::loading::LoadedVolume;
 use crate::optics::peak::Peak;
-use crate::render::Failure;
 use crate::scene::{Problem, Problems};
 use crate::sources::BrickRanges;
 use crate::view::{

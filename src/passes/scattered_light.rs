@@ -11,12 +11,12 @@ use super::light_volume::lookup;
 use super::light_volume::{LightVolume, LightVolumes, lighting_in_force, scene_from_texture};
 use super::volume_shadow::{self, VolumeShadow, VolumeShadows};
 use crate::components::{Placement, SceneSettings, Shading, VolumeLighting};
+use crate::failure::Failure;
 use crate::gpu::{
     Gpu, GpuError, Grid, Invocations, Kernel, KernelDescriptor, PassTimer, binding, storage, uniform_buffer,
 };
 use crate::loading::LoadedVolume;
 use crate::optics::peak::Peak;
-use crate::render::Failure;
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
 use glam::{DAffine3, DVec3, Vec3};
@@ -141,6 +141,9 @@ pub(crate) fn run(
     for (entity, loaded, placement, lighting, shading, cells, network, light_volumes, shadows, mut kept) in
         &mut volumes
     {
+        if failure.stands_on(entity) {
+            continue;
+        }
         let lighting = lighting_in_force(lighting, shading, &settings);
         let scene_from_texture = scene_from_texture(loaded, placement, &settings);
         let mut own = ScatteredLight::default();
@@ -164,14 +167,16 @@ pub(crate) fn run(
             let medium = (cells, network);
             let timing = timer.as_mut().and_then(|timer| timer.time_compute("scattered_light"));
             let lit = (light_volume, shadow);
-            match scatter(&gpu, &mut scatterer, medium, lit, &recipe.source, timing, &mut report) {
+            match gpu.attempt("scattered_light", || {
+                scatter(&gpu, &mut scatterer, medium, lit, &recipe.source, timing, &mut report)
+            }) {
                 Ok(buffer) => {
                     scatterer.version += 1;
                     held += buffer.size();
                     let (light, version) = (light_volume.light, scatterer.version);
                     all.0.push(ScatteredLayer { light, cells: buffer, recipe, version });
                 }
-                Err(error) => failure.keep(Err(error)),
+                Err(error) => failure.on(entity, "scattered_light", "VolumeLighting", error),
             }
         }
         if kept.is_none() {

@@ -15,9 +15,9 @@ use super::scattering_gbuffer::{self, CameraMaps, TexelChooser};
 use super::surface_points::SurfacePoints;
 use super::upload::MeshBuffers;
 use crate::components::{DipoleModel, DirectionalLight, Material, ScatteringMaps, Subsurface};
+use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, PassTimer, storage};
 use crate::loading::LoadedMesh;
-use crate::render::Failure;
 use crate::report::Report;
 use bevy_ecs::prelude::*;
 use glam::Vec3;
@@ -98,6 +98,9 @@ pub(crate) fn run(
     let irradiance = |light: Entity| lights.get(light).map_or(Vec3::ZERO, |light| light.irradiance);
     let mut held = 0;
     for (entity, body, subsurface, maps, (points, mesh), views, cameras, mut radiosity) in &mut bodies {
+        if failure.stands_on(entity) {
+            continue;
+        }
         let layer = 16 * u64::from(points.count);
         let is_shared = layer * views.0.len() as u64 > BUDGET;
         let size = if is_shared { layer } else { layer * views.0.len().max(1) as u64 };
@@ -113,16 +116,12 @@ pub(crate) fn run(
         kept.keep_dipole(subsurface);
         let medium = kept.dipole.2.uniform(LEAST_DISTANCE, body.millimetres);
         let job = Job { gpu: &gpu, body, maps, points, mesh, medium: &medium, model: subsurface.model };
-        let result = kept.refine(
-            &job,
-            views,
-            cameras,
-            (*refinement, &irradiance),
-            &mut tools,
-            timer.as_deref_mut(),
-            &mut report,
-        );
-        failure.keep(result);
+        let asked = (*refinement, &irradiance as &dyn Fn(Entity) -> Vec3);
+        let timer = timer.as_deref_mut();
+        let refined = || kept.refine(&job, views, cameras, asked, &mut tools, timer, &mut report);
+        if let Err(error) = gpu.attempt("scattered_radiosity", refined) {
+            failure.on(entity, "scattered_radiosity", "Subsurface", error);
+        }
         if let Some(new) = new {
             commands.entity(entity).insert(new);
         }

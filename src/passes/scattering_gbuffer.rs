@@ -12,9 +12,9 @@ use super::gbuffer::{Fit, Gbuffer, OrthographicView};
 use super::surface_points::SurfacePoints;
 use super::upload::MeshBuffers;
 use crate::components::{Auto, MapResolution, MapStrategy, ScatteringCameras, ScatteringMaps};
+use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, Layers, PassTimer, Target};
 use crate::loading::LoadedMesh;
-use crate::render::Failure;
 use crate::report::Report;
 use crate::scene::{Problem, Problems};
 use crate::view::Picture;
@@ -96,6 +96,9 @@ pub(crate) fn run(
     }
     let mut held = 0;
     for (entity, body, buffers, points, mesh, maps, own_cameras, made) in &bodies {
+        if failure.stands_on(entity) {
+            continue;
+        }
         let Some(own_cameras) = own_cameras else { continue };
         let (by_hand, automatic) = directions(body, own_cameras, &cameras);
         if by_hand.is_empty() && automatic.is_empty() {
@@ -123,22 +126,14 @@ pub(crate) fn run(
             problems.0.push(problem.on(entity, "ScatteringMaps.resolution"));
             continue;
         }
-        let timing = timer.as_mut();
-        match build(
-            &gpu,
-            &mut gbuffer,
-            &mut chooser,
-            mesh,
-            recipe,
-            0,
-            timing.map(|timer| &mut **timer),
-            &mut report,
-        ) {
+        let timer = timer.as_deref_mut();
+        let built = || build(&gpu, &mut gbuffer, &mut chooser, mesh, recipe, 0, timer, &mut report);
+        match gpu.attempt("scattering_gbuffer", built) {
             Ok(maps) => {
                 held += maps.bytes();
                 commands.entity(entity).insert(maps);
             }
-            Err(error) => failure.keep(Err(error)),
+            Err(error) => failure.on(entity, "scattering_gbuffer", "ScatteringMaps", error),
         }
     }
     report.hold("scattering_gbuffer", held);

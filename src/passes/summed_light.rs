@@ -5,11 +5,11 @@
 use super::light_cells::LightCells;
 use super::scattered_light::ScatteredLight;
 use crate::components::DirectionalLight;
+use crate::failure::Failure;
 use crate::gpu::{
     Gpu, GpuError, Grid, Invocations, Kernel, KernelDescriptor, PassTimer, binding, storage, storage_of,
     uniform_buffer,
 };
-use crate::render::Failure;
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
 use glam::{UVec3, Vec3, Vec4};
@@ -70,6 +70,9 @@ pub(crate) fn run(
     }
     let mut held = 0;
     for (entity, cells, scattered, kept) in &volumes {
+        if failure.stands_on(entity) {
+            continue;
+        }
         let irradiance = |light| lights.get(light).map_or(Vec3::ZERO, |light| light.irradiance);
         let irradiances: Vec<Vec3> = scattered.0.iter().map(|layer| irradiance(layer.light)).collect();
         let versions: Vec<u64> = scattered.0.iter().map(|layer| layer.version).collect();
@@ -79,12 +82,14 @@ pub(crate) fn run(
             continue;
         }
         let timing = timer.as_mut().and_then(|timer| timer.time_compute("summed_light"));
-        match sum(&gpu, &mut adder, cells.grid.size(), scattered, made, timing, &mut report) {
+        match gpu.attempt("summed_light", || {
+            sum(&gpu, &mut adder, cells.grid.size(), scattered, made, timing, &mut report)
+        }) {
             Ok(summed) => {
                 held += summed.fluence.bytes();
                 commands.entity(entity).insert(summed);
             }
-            Err(error) => failure.keep(Err(error)),
+            Err(error) => failure.on(entity, "summed_light", "VolumeLighting", error),
         }
     }
     report.hold("summed_light", held);

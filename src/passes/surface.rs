@@ -10,8 +10,8 @@ use super::light_volume::through::{self, Shading, VeilCount, Veils};
 use super::surface_points::SurfacePoints;
 use super::upload::MeshBuffers;
 use crate::components::{Phong, Placement, SceneSettings, Shading as ShadingKind, Subsurface};
+use crate::failure::Failure;
 use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, begin, binding, uniform_each};
-use crate::render::Failure;
 use crate::view::{
     Comparison, FrameBuffers, Part, Picture, View, far_background, in_parts, is_wanted, lights_module, to_eye,
 };

@@ -4,6 +4,7 @@
 use super::body::Body;
 use super::upload::MeshBuffers;
 use crate::components::{Projection, Subsurface};
+use crate::failure::Failure;
 use crate::gpu::Gpu;
 use crate::loading::LoadedMesh;
 use crate::report::Report;
@@ -51,10 +52,13 @@ pub(crate) fn refine(
     gpu: Res<Gpu>,
     (view, picture): (Res<View>, Res<Picture>),
     meshes: Query<Refinable>,
-    (mut report, mut problems): (ResMut<Report>, ResMut<Problems>),
+    (mut report, mut failure, mut problems): (ResMut<Report>, ResMut<Failure>, ResMut<Problems>),
 ) {
     let mut held = 0;
     for (entity, mesh, buffers, body, subsurface, points) in &meshes {
+        if failure.stands_on(entity) {
+            continue;
+        }
         let spacing = spacing(&view, &picture, body, subsurface);
         let current =
             points.filter(|points| points.source == *buffers && spacing * HYSTERESIS >= points.spacing);
@@ -74,7 +78,14 @@ pub(crate) fn refine(
             if gpu.is_software() { most_points_in_software(data.positions.len()) } else { MOST_POINTS };
         let (refined, _) = data.refined(body.body_from_mesh.matrix3, spacing, most);
         let is_same = refined.positions.len() == data.positions.len();
-        let mesh = if is_same { buffers.clone() } else { MeshBuffers::new(&gpu, &refined) };
+        let mesh = if is_same { Ok(buffers.clone()) } else { MeshBuffers::new(&gpu, &refined) };
+        let mesh = match mesh {
+            Ok(mesh) => mesh,
+            Err(error) => {
+                failure.on(entity, "surface_points", "Subsurface", error);
+                continue;
+            }
+        };
         let points =
             SurfacePoints { mesh, count: refined.positions.len() as u32, spacing, source: buffers.clone() };
         held += points.bytes();

@@ -4,8 +4,8 @@
 
 use super::raycast::RayCaster;
 use super::surface::Surface;
+use crate::failure::Failure;
 use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, binding, uniform_buffer};
-use crate::render::Failure;
 use crate::view::{Picture, View, is_wanted};
 use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};

@@ -1,7 +1,8 @@
 //! What was read goes to the GPU, once, and is let go of on the processor.
 
 use crate::components::Subsurface;
-use crate::gpu::{Gpu, VolumeFormat};
+use crate::failure::Failure;
+use crate::gpu::{Gpu, GpuError, VolumeFormat};
 use crate::loading::{LoadedMesh, LoadedVolume};
 use crate::scene::{EntityProblems, Problem};
 use crate::sources::{MeshData, Samples};
@@ -9,6 +10,7 @@ use crate::{Stage, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
 use half::f16;
+use std::collections::HashSet;
 use wgpu::util::DeviceExt;
 
 /// Uploads meshes.
@@ -39,7 +41,11 @@ pub(crate) struct MeshBuffers {
 
 impl MeshBuffers {
     /// Uploads a mesh.
-    pub fn new(gpu: &Gpu, data: &MeshData) -> Self {
+    ///
+    /// # Errors
+    ///
+    /// If the driver has no room for it.
+    pub fn new(gpu: &Gpu, data: &MeshData) -> Result<Self, GpuError> {
         let vertices: Vec<[[f32; 3]; 2]> = data
             .positions
             .iter()
@@ -47,11 +53,14 @@ impl MeshBuffers {
             .map(|(position, normal)| [position.to_array(), normal.to_array()])
             .collect();
         let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-        Self {
-            vertices: buffer(gpu, "vertices", bytemuck::cast_slice(&vertices), usage),
-            indices: buffer(gpu, "indices", bytemuck::cast_slice(&data.triangles), wgpu::BufferUsages::INDEX),
-            index_count: 3 * data.triangles.len() as u32,
-        }
+        let indices = bytemuck::cast_slice(&data.triangles);
+        gpu.attempt("uploading a mesh", || {
+            Ok(Self {
+                vertices: buffer(gpu, "vertices", bytemuck::cast_slice(&vertices), usage),
+                indices: buffer(gpu, "indices", indices, wgpu::BufferUsages::INDEX),
+                index_count: 3 * data.triangles.len() as u32,
+            })
+        })
     }
 
     /// Draws all triangles, with the vertices in slot 0.
@@ -87,13 +96,19 @@ pub(crate) const SENTINEL_THRESHOLD: f32 = 2.0e30;
 fn upload_meshes(
     mut commands: Commands,
     gpu: Res<Gpu>,
-    mut meshes: Query<(Entity, &mut LoadedMesh, Has<Subsurface>), Changed<LoadedMesh>>,
+    mut meshes: Query<(Entity, &mut LoadedMesh, Has<Subsurface>)>,
     all: Query<&MeshBuffers>,
-    mut report: ResMut<Report>,
+    mut failed: Local<HashSet<Entity>>,
+    (mut report, mut failure): (ResMut<Report>, ResMut<Failure>),
 ) {
     let limit = gpu.device.limits().max_buffer_size;
     let mut added = 0;
     for (entity, mut mesh, scatters) in &mut meshes {
+        let is_due = mesh.is_changed() || failed.contains(&entity);
+        if !is_due || failure.stands_on(entity) {
+            continue;
+        }
+        failed.remove(&entity);
         let kept = &mut mesh.bypass_change_detection().data;
         // What scatters is refined from here when the picture or the medium calls for it.
         let Some(data) = (if scatters { kept.clone() } else { kept.take() }) else { continue };
@@ -105,10 +120,18 @@ fn upload_meshes(
         if !fits {
             continue;
         }
-        let buffers = MeshBuffers::new(&gpu, &data);
-        added += buffers.bytes();
-        report.ran("upload_meshes", &[("triangles", data.triangles.len() as u64)]);
-        commands.entity(entity).insert(buffers);
+        match MeshBuffers::new(&gpu, &data) {
+            Ok(buffers) => {
+                added += buffers.bytes();
+                report.ran("upload_meshes", &[("triangles", data.triangles.len() as u64)]);
+                commands.entity(entity).insert(buffers);
+            }
+            Err(error) => {
+                *kept = Some(data);
+                failed.insert(entity);
+                failure.on(entity, "upload_meshes", "Mesh", error);
+            }
+        }
     }
     let held: u64 = all.iter().map(MeshBuffers::bytes).sum::<u64>() + added;
     if held > 0 {
@@ -131,17 +154,18 @@ fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::BufferUsages) ->
 fn upload_volumes(
     mut commands: Commands,
     gpu: Res<Gpu>,
-    mut volumes: Query<(Entity, &mut LoadedVolume), Changed<LoadedVolume>>,
+    mut volumes: Query<(Entity, &mut LoadedVolume)>,
     all: Query<&VolumeTexture>,
-    mut report: ResMut<Report>,
+    (mut report, mut failure): (ResMut<Report>, ResMut<Failure>),
 ) {
     let limit = gpu.device.limits().max_texture_dimension_3d;
     let mut added = 0;
     for (entity, mut volume) in &mut volumes {
         let volume = volume.bypass_change_detection();
-        if !std::mem::take(&mut volume.has_samples) {
+        if !volume.has_samples || failure.stands_on(entity) {
             continue;
         }
+        volume.has_samples = false;
         let size = volume.data.size;
         let emptied = volume.data.samples.emptied();
         let samples = std::mem::replace(&mut volume.data.samples, emptied);
@@ -151,10 +175,18 @@ fn upload_volumes(
         if !fits {
             continue;
         }
-        let texture = texture(&gpu, size, &samples);
-        added += texture.bytes;
-        report.ran("upload_volumes", &[("voxels", samples.len() as u64)]);
-        commands.entity(entity).insert(texture);
+        match gpu.attempt("uploading a volume", || Ok(texture(&gpu, size, &samples))) {
+            Ok(texture) => {
+                added += texture.bytes;
+                report.ran("upload_volumes", &[("voxels", samples.len() as u64)]);
+                commands.entity(entity).insert(texture);
+            }
+            Err(error) => {
+                volume.data.samples = samples;
+                volume.has_samples = true;
+                failure.on(entity, "upload_volumes", "Volume", error);
+            }
+        }
     }
     let held: u64 = all.iter().map(|volume| volume.bytes).sum::<u64>() + added;
     if held > 0 {

@@ -8,9 +8,9 @@ use super::gbuffer::{FORMAT, Fit, Gbuffer, OrthographicView, seen_box};
 use super::light_gbuffer::{Blocker, Meshes, blockers};
 use super::light_volume::{LightVolumes, scene_from_texture};
 use crate::components::{DirectionalLight, Motion, Placement, SceneSettings};
+use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, PassTimer, Target, binding, uniform_array};
 use crate::loading::LoadedVolume;
-use crate::render::Failure;
 use crate::report::Report;
 use crate::view::lights_in_order;
 use bevy_ecs::prelude::*;
@@ -78,6 +78,9 @@ pub(crate) fn run(
     }
     let mut held = 0;
     for (entity, loaded, placement, mut kept) in &mut volumes {
+        if failure.stands_on(entity) {
+            continue;
+        }
         let mut own = VolumeShadows::default();
         let all = kept.as_mut().map_or(&mut own, |kept| kept.bypass_change_detection());
         let mut old = std::mem::take(&mut all.0);
@@ -92,13 +95,13 @@ pub(crate) fn run(
                 continue;
             }
             let timing = timer.as_mut().and_then(|timer| timer.time("volume_shadow"));
-            match draw(&gpu, &mut gbuffer, &recipe, timing, &mut report) {
+            match gpu.attempt("volume_shadow", || draw(&gpu, &mut gbuffer, &recipe, timing, &mut report)) {
                 Ok(target) => {
                     version.0 += 1;
                     held += target.bytes();
                     all.0.push(VolumeShadow { light, target, recipe, version: version.0 });
                 }
-                Err(error) => failure.keep(Err(error)),
+                Err(error) => failure.on(entity, "volume_shadow", "Volume", error),
             }
         }
         if kept.is_none() && !own.0.is_empty() {

@@ -11,6 +11,7 @@ use super::edits::Edits;
 use super::problem::{Problem, Problems};
 use super::reconcile::{Changes, reconcile_after};
 use super::watch::{Altered, FileWatch, Found, Reason, Wake, content};
+use crate::failure::Failure;
 use crate::gpu::{Gpu, shader};
 use crate::loading::{FileChanged, FilesRead};
 use crate::passes::products;
@@ -156,6 +157,7 @@ impl LiveScene {
         app.world_mut().resource_mut::<Report>().spent("watch", since);
         let shaders = follow_shaders(app.world_mut(), &files);
         let assets = tell_of_assets(app.world_mut(), &files);
+        app.world_mut().resource_mut::<Failure>().forget();
         let mut changes = Changes::default();
         if !files.is_disjoint(&self.text) {
             changes = self.read(app);

@@ -33,6 +33,8 @@ pub enum Command {
     Redo,
     /// To write edits to the files that they are of.
     Save,
+    /// To give the graphics device up and open another.
+    ReopenDevice,
     /// To close the window, or to be asked first where edits are not saved.
     Quit,
     /// To save and close the window, if all could be saved.

@@ -31,7 +31,7 @@ pub fn panels(ui: &mut Ui, world: &mut World, shown: &Shown) -> Laid {
     Panel::bottom("report").resizable(true).default_size(200.0).show_collapsible(
         ui,
         &mut open.report,
-        |ui| report::show(ui, world),
+        |ui| report::show(ui, world, &mut commands),
     );
     Panel::left("entities").resizable(true).default_size(190.0).show_collapsible(
         ui,

@@ -1,18 +1,24 @@
 //! What the last picture took: passes, times, memory.
 
-use super::Totals;
+use super::{Command, Totals};
 use crate::report::{PassRecord, Report};
 use bevy_ecs::prelude::*;
 use egui::{Grid, ScrollArea, Ui};
 
-pub(super) fn show(ui: &mut Ui, world: &mut World) {
+pub(super) fn show(ui: &mut Ui, world: &mut World, commands: &mut Vec<Command>) {
     let totals = world.get_resource_or_init::<Totals>().clone();
     let report = world.get_resource_or_init::<Report>().clone();
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         ui.horizontal_top(|ui| {
             Grid::new("passes").striped(true).num_columns(5).show(ui, |ui| passes(ui, &report, &totals));
             ui.separator();
-            Grid::new("memory").striped(true).num_columns(2).show(ui, |ui| memory(ui, &report));
+            ui.vertical(|ui| {
+                Grid::new("memory").striped(true).num_columns(2).show(ui, |ui| memory(ui, &report));
+                let tip = "Give up all that is on the graphics device and make it again on another, as is done by itself when the driver loses it";
+                if ui.button("Reopen the device").on_hover_text(tip).clicked() {
+                    commands.push(Command::ReopenDevice);
+                }
+            });
         });
     });
 }

@@ -1,6 +1,7 @@
 //! What is asked of a picture, beside what the scene says.
 
 use crate::components::{Projection, Shading, ViewCamera};
+use crate::failure::Failure;
 use bevy_ecs::prelude::*;
 use glam::{DAffine3, DVec3, UVec2};
 use std::ops::Range;
@@ -75,8 +76,8 @@ impl Default for Drawing {
 }
 
 /// For the passes of the picture itself.
-pub(crate) fn is_wanted(drawing: Res<Drawing>) -> bool {
-    drawing.0
+pub(crate) fn is_wanted(drawing: Res<Drawing>, failure: Res<Failure>) -> bool {
+    drawing.0 && !failure.keeps_picture()
 }
 
 /// A picture that is split from top to bottom, to compare two shadings of the same scene. What is computed for scattering is kept, whichever side

@@ -210,6 +210,9 @@ impl Open {
         if size.width == 0 || size.height == 0 {
             return Ok(false);
         }
+        if self.gpu.lost().is_some() {
+            self.reopen_device()?;
+        }
         let started = Instant::now();
         let input = self.state.take_egui_input(&self.window);
         let mut frame = self.session.frame(input, self.painter.picture());
@@ -241,6 +244,14 @@ impl Open {
         self.failed = if is_shown { 0 } else { self.failed + 1 };
         self.plan(if is_shown { frame.next } else { Some(RETRY * self.failed.min(10)) });
         Ok(frame.quit)
+    }
+
+    /// Goes on with another device.
+    fn reopen_device(&mut self) -> Result<(), WindowError> {
+        self.gpu = self.surface.reopen(&self.gpu.options)?;
+        self.painter = self.surface.painter(&self.gpu);
+        self.session.replace_device(self.gpu.clone());
+        Ok(())
     }
 
     /// Marks the title of a scene with edits that are not saved.

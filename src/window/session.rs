@@ -9,6 +9,7 @@ use super::pace::Pace;
 use super::stale::Drawn;
 use crate::gpu::Gpu;
 use crate::passes::tonemap::Tonemap;
+use crate::render::replace_device;
 use crate::scene::{LiveScene, Problem, Reload};
 use crate::ui::{self, Command, Laid, Level, Log, PictureFile, Shown};
 use crate::view::{FreeCamera, Picture, SceneBounds, View, bounds_of};
@@ -56,6 +57,8 @@ pub struct Session {
     wanted: Vec<PictureFile>,
     pictures: u64,
     frames: u64,
+    /// Devices that were lost.
+    lost: usize,
 }
 
 /// What came of a frame.
@@ -81,12 +84,6 @@ impl Session {
         let pace = Pace::new(gpu.is_software());
         let shown = Shown { adapter: gpu.info.name.clone(), ..Default::default() };
         let log = app.world().resource::<Log>().clone();
-        let told = log.clone();
-        // What the driver reports between passes, running out of memory above all, is no reason to end.
-        gpu.device.on_uncaptured_error(std::sync::Arc::new(move |error: wgpu::Error| {
-            log::error!("{error}");
-            told.tell(Level::Error, error.to_string());
-        }));
         let context = egui::Context::default();
         let mut session = Self {
             app,
@@ -106,6 +103,7 @@ impl Session {
             wanted: Vec::new(),
             pictures: 0,
             frames: 0,
+            lost: 0,
         };
         session.tell_problems();
         session
@@ -155,6 +153,17 @@ impl Session {
         self.told.clear();
         self.tell_problems();
         true
+    }
+
+    /// Goes on with another device than the one that is gone. The scene stays as it is, edits and all; the next frame draws it anew, and is
+    /// to be painted by a [`Painter`](super::Painter) of the new device.
+    pub fn replace_device(&mut self, gpu: Gpu) {
+        let lost = self.app.world().resource::<Gpu>().lost().unwrap_or("another was asked for").to_owned();
+        self.log.tell(Level::Warning, format!("the graphics device was lost ({lost}); another took over"));
+        self.shown.adapter = gpu.info.name.clone();
+        replace_device(self.app.world_mut(), gpu);
+        self.drawn = Drawn::default();
+        self.lost += 1;
     }
 
     /// Whether the window may be closed. Where edits would be lost, the panels ask what is to become of them, and answer by [`Frame::quit`].
@@ -213,7 +222,10 @@ impl Session {
         self.app.insert_resource(sorted);
     }
 
-    fn lay_out(&mut self, input: RawInput) -> (FullOutput, Laid) {
+    fn lay_out(&mut self, mut input: RawInput) -> (FullOutput, Laid) {
+        // Glyphs are handed over once, unless the size of their texture changes; another device has to be given them again.
+        let most = self.app.world().resource::<Gpu>().device.limits().max_texture_dimension_2d as usize;
+        input.max_texture_side = Some(most - self.lost % 2);
         let mut laid: Option<Laid> = None;
         let (context, world) = (self.context.clone(), self.app.world_mut());
         let output = context.run_ui(input, |ui| {
@@ -259,6 +271,13 @@ impl Session {
                 }
                 Command::ResetCamera => {
                     self.orbit = None;
+                    continue;
+                }
+                Command::ReopenDevice => {
+                    let gpu = world.resource::<Gpu>();
+                    gpu.device.destroy();
+                    // What becomes of it is told to those who ask.
+                    _ = gpu.device.poll(wgpu::PollType::Poll);
                     continue;
                 }
                 Command::Screenshot(kind) => {

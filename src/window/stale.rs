@@ -1,89 +1,41 @@
 //! Whether the picture that is shown is still that of the scene.
 
-use crate::components::SceneSettings;
+use crate::changes::Seen;
 use crate::view::{Coarseness, Comparison, FreeCamera, Picture};
 use crate::{Refinement, SceneTime};
-use bevy_ecs::change_detection::Tick;
-use bevy_ecs::component::ComponentId;
 use bevy_ecs::prelude::*;
-use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
-use std::collections::BTreeMap;
 
-/// When the picture was drawn, and of what.
+/// The scene of which the picture was drawn, and when.
 ///
-/// Whoever changes something need not say so: change ticks tell of components that scenes can write, those of plugins too, and of what is
-/// asked of the picture; how many there are of each tells of those that are gone.
+/// Whoever changes something need not say so, be it of the scene or of what is asked of the picture.
 #[derive(Debug, Default)]
-pub(super) struct Drawn(Option<(Tick, Inventory)>);
-
-/// How many entities have each component.
-type Inventory = BTreeMap<ComponentId, usize>;
+pub(super) struct Drawn(Seen);
 
 impl Drawn {
     /// Whether anything has changed since the picture was drawn.
     pub fn is_stale(&self, world: &World) -> bool {
-        let Some((drawn, inventory)) = &self.0 else { return true };
-        let now = world.read_change_tick();
-        resources_changed(world, *drawn, now) || {
-            let (found, changed) = look(world, *drawn, now);
-            changed || found != *inventory
-        }
+        let asked = [
+            Seen::has_other::<SceneTime>,
+            Seen::has_other::<Picture>,
+            Seen::has_other::<FreeCamera>,
+            Seen::has_other::<Comparison>,
+            Seen::has_other::<Coarseness>,
+            Seen::has_other::<Refinement>,
+        ];
+        asked.iter().any(|has_other| has_other(&self.0, world)) || self.0.has_changed(world)
     }
 
     /// Takes what is there as drawn.
     pub fn take(&mut self, world: &mut World) {
-        // What is written from here on has a later tick.
-        let tick = world.increment_change_tick();
-        self.0 = Some((tick, look(world, tick, tick).0));
+        self.0.take(world);
     }
-}
-
-fn resources_changed(world: &World, drawn: Tick, now: Tick) -> bool {
-    [
-        world.get_resource_change_ticks::<SceneSettings>(),
-        world.get_resource_change_ticks::<SceneTime>(),
-        world.get_resource_change_ticks::<Picture>(),
-        world.get_resource_change_ticks::<FreeCamera>(),
-        world.get_resource_change_ticks::<Comparison>(),
-        world.get_resource_change_ticks::<Coarseness>(),
-        world.get_resource_change_ticks::<Refinement>(),
-    ]
-    .into_iter()
-    .flatten()
-    .any(|ticks| ticks.changed.is_newer_than(drawn, now))
-}
-
-/// Counts the components that scenes can write, and finds out whether any was written since.
-fn look(world: &World, drawn: Tick, now: Tick) -> (Inventory, bool) {
-    let mut inventory = Inventory::new();
-    let mut changed = false;
-    let Some(registry) = world.get_resource::<AppTypeRegistry>() else { return (inventory, changed) };
-    let registry = registry.read();
-    let is_of_scenes = |id: &ComponentId| {
-        let type_id = world.components().get_info(*id).and_then(|info| info.type_id());
-        type_id.is_some_and(|id| registry.get_type_data::<ReflectComponent>(id).is_some())
-    };
-    for archetype in world.archetypes().iter().filter(|archetype| !archetype.is_empty()) {
-        let components: Vec<ComponentId> =
-            archetype.components().iter().copied().filter(is_of_scenes).collect();
-        for id in &components {
-            *inventory.entry(*id).or_default() += archetype.entities().len();
-        }
-        let was_written = |entity: Entity| {
-            let Ok(entity) = world.get_entity(entity) else { return false };
-            let ticks = |id: &ComponentId| entity.get_change_ticks_by_id(*id);
-            components.iter().filter_map(ticks).any(|ticks| ticks.changed.is_newer_than(drawn, now))
-        };
-        changed = changed || archetype.entities().iter().any(|entity| was_written(entity.id()));
-    }
-    (inventory, changed)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::TyndallPlugins;
-    use crate::components::{Phong, Shading, Transform};
+    use crate::components::{Phong, SceneSettings, Shading, Transform};
     use bevy_app::App;
 
     /// A world with two entities, as drawn.

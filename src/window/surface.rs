@@ -55,6 +55,13 @@ impl WindowSurface {
         Ok((Self { instance, surface, config, window }, gpu))
     }
 
+    /// Another device for the same window.
+    pub fn reopen(&mut self, options: &GpuOptions) -> Result<Gpu, WindowError> {
+        let (gpu, _) = pollster::block_on(Gpu::for_surface(&self.instance, &self.surface, options))?;
+        self.surface.configure(&gpu.device, &self.config);
+        Ok(gpu)
+    }
+
     /// A painter for it.
     pub fn painter(&self, gpu: &Gpu) -> Painter {
         Painter::new(gpu, self.config.format)

@@ -2,9 +2,9 @@
 
 use super::Session;
 use crate::Refinement;
+use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, PassTimer};
 use crate::passes::scattered_radiosity::refined;
-use crate::render::Failure;
 use crate::report::Report;
 use crate::ui::{Level, OpenPanels, Totals};
 use crate::view::{Coarseness, Drawing, Picture};
