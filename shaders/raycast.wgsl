@@ -223,6 +223,9 @@ fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, thinned: f32, plac
         } else {
             arriving += beside_peak(volume.g) * even;
         }
+    } else if ANY_SHARED {
+        // Of lights that have no light volume of their own.
+        arriving += volume.fluence_scale / (4.0 * PI) * fluence_at(index, place);
     }
     let sent = albedo * arriving / thinned + volume.emission * colour;
     if ANY_HIGHLIGHT {

@@ -1,6 +1,6 @@
 // Scattered light of all lights together: what the ray caster looks up.
 //
-// reads  fluence of each light, for an irradiance of 1
+// reads  fluence of each light, for an irradiance of 1, and of those that share one, with theirs
 // writes rgba16float: fluence as a share of `scale`
 
 struct Summation {
@@ -9,7 +9,7 @@ struct Summation {
 }
 
 @group(0) @binding(0) var<uniform> summation: Summation;
-// Irradiance of this light.
+// Irradiance of a light as a share of `scale`.
 @group(0) @binding(1) var<storage, read> irradiances: array<vec4f>;
 @group(0) @binding(2) var<storage, read> scattered: array<vec4f>;
 @group(0) @binding(3) var fluence: texture_storage_3d<rgba16float, write>;

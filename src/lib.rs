@@ -95,6 +95,7 @@ mod view;
 mod whole_file;
 pub mod window;
 pub use app::{SceneTime, Stage, TyndallPlugins};
+pub use passes::light_budget::LightBudget;
 pub use passes::light_gbuffer::LightTexels;
 pub use passes::scattered_radiosity::Refinement;
 pub use passes::scattering_gbuffer::AutomaticCamera;

@@ -73,6 +73,7 @@ pub fn all() -> Vec<Mirror> {
         passes::eye_light::sweep::ScatterSweepUniform::mirror(),
         passes::eye_light::sweep::SliceUniform::mirror(),
         passes::eye_light::EyeSweepUniform::mirror(),
+        passes::shared_light::ShareUniform::mirror(),
         passes::summed_light::SummationUniform::mirror(),
         passes::raycast::VolumeInstance::mirror(),
         passes::tonemap::DisplayUniform::mirror(),

@@ -13,6 +13,8 @@ pub struct Report {
     pub pipelines: Vec<&'static str>,
     /// Bytes held on the GPU, by what holds them.
     pub gpu_bytes: BTreeMap<&'static str, u64>,
+    /// Lights that share a product where the [`LightBudget`](crate::LightBudget) does not go round, by the pass that would keep one for each.
+    pub sharing_lights: BTreeMap<&'static str, u64>,
     /// Wall-clock milliseconds of the parts of the program, in order.
     pub timeline: Vec<(&'static str, f64)>,
     /// Whether to measure what costs time to measure: GPU times and samples taken.
@@ -47,6 +49,15 @@ impl Report {
             self.gpu_bytes.remove(what);
         } else {
             self.gpu_bytes.insert(what, bytes);
+        }
+    }
+
+    /// Notes how many lights share a product of a pass; none are not listed.
+    pub fn share(&mut self, pass: &'static str, lights: usize) {
+        if lights == 0 {
+            self.sharing_lights.remove(pass);
+        } else {
+            self.sharing_lights.insert(pass, lights as u64);
         }
     }
 

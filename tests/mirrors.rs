@@ -23,6 +23,7 @@ fn shaders() -> Vec<(&'static str, naga::Module, String)> {
         "light_escape",
         "scattered_light",
         "diffusion",
+        "shared_light",
         "summed_light",
         "eye_light",
         "dimmed_gbuffer",

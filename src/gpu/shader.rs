@@ -47,6 +47,7 @@ sources! {
     "scattered_texels" => "scattered_texels.wgsl",
     "scattering_texels" => "scattering_texels.wgsl",
     "shadow" => "shared/shadow.wgsl",
+    "shared_light" => "shared_light.wgsl",
     "summed_light" => "summed_light.wgsl",
     "surface" => "surface.wgsl",
     "sweep" => "shared/sweep.wgsl",

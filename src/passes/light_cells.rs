@@ -4,6 +4,7 @@
 //! when its data, its transfer function or the resolution of its light changes.
 
 use super::classify::Classified;
+use super::light_budget::KeptLights;
 use super::light_volume::lighting_in_force;
 use super::light_volume::medium::{Medium, MediumKernels};
 use super::upload::VolumeTexture;
@@ -72,7 +73,7 @@ type Volumes<'w, 's> = Query<
 
 pub(crate) fn run(
     mut commands: Commands,
-    (gpu, settings): (Res<Gpu>, Res<SceneSettings>),
+    (gpu, settings, kept_lights): (Res<Gpu>, Res<SceneSettings>, Res<KeptLights>),
     volumes: Volumes,
     former: Query<Entity, (With<LightCells>, Without<LoadedVolume>)>,
     lights: Query<(), With<crate::components::DirectionalLight>>,
@@ -88,14 +89,13 @@ pub(crate) fn run(
             continue;
         }
         let lighting = lighting_in_force(lighting, shading, &settings);
-        let VolumeLighting::LightVolume { resolution, .. } = lighting else {
+        let is_often = matches!(lighting, VolumeLighting::LightVolume { .. });
+        // Light that is scattered once needs cells where lights share one sum.
+        let is_wanted = !lights.is_empty() && (is_often || lights.iter().count() > kept_lights.0);
+        let Some(resolution) = lighting.light_resolution().filter(|_| is_wanted) else {
             commands.entity(entity).remove::<LightCells>();
             continue;
         };
-        if lights.is_empty() {
-            commands.entity(entity).remove::<LightCells>();
-            continue;
-        }
         let cells = UVec3::from(loaded.data.size.map(|voxels| cells_along(voxels, resolution)));
         let recipe = Recipe { cells, volume: texture.view.clone(), classified: classified.versions.table };
         if let Some(kept) = kept.filter(|kept| kept.recipe == recipe) {

@@ -115,6 +115,7 @@ pub(crate) fn run(
         let VolumeLighting::LightVolume { g, cone_angle, .. } =
             lighting_in_force(lighting, shading, &settings)
         else {
+            commands.entity(entity).remove::<LightNetwork>();
             continue;
         };
         let spread = match cone_angle {

@@ -10,6 +10,7 @@ pub mod sweep;
 pub mod through;
 
 use super::classify::Classified;
+use super::light_budget::KeptLights;
 use super::upload::VolumeTexture;
 use crate::components::{DirectionalLight, Motion, Placement, SceneSettings, Shading, VolumeLighting};
 use crate::failure::Failure;
@@ -41,14 +42,28 @@ pub(crate) struct LightVolume {
     pub version: u64,
 }
 
+impl LightVolume {
+    /// What a light sends into a volume, made by a recipe.
+    pub fn new(light: Entity, grid: Grid, recipe: Recipe, version: u64) -> Self {
+        Self { light, grid, sweep: recipe.sweep, recipe, version }
+    }
+}
+
 /// Everything that the texels depend on.
 #[derive(Clone, Debug, PartialEq)]
-struct Recipe {
+pub(crate) struct Recipe {
     sweep: Sweep,
     /// Scene units that light travels from slice to slice.
     slice: f64,
     volume: wgpu::TextureView,
     classified: u64,
+}
+
+impl Recipe {
+    /// How far light travels from slice to slice, in the texture's space.
+    pub fn step(&self) -> DVec3 {
+        self.sweep.step()
+    }
 }
 
 /// What the pass keeps between frames.
@@ -99,13 +114,14 @@ type Volumes<'w, 's> = Query<
 
 pub(crate) fn run(
     mut commands: Commands,
-    (gpu, settings): (Res<Gpu>, Res<SceneSettings>),
+    (gpu, settings, kept_lights): (Res<Gpu>, Res<SceneSettings>, Res<KeptLights>),
     mut volumes: Volumes,
     lights: Query<(Entity, &DirectionalLight, Option<&Motion>)>,
     mut sweeper: ResMut<LightSweeper>,
     (mut timer, mut report, mut failure): (Option<ResMut<PassTimer>>, ResMut<Report>, ResMut<Failure>),
 ) {
-    let lights = lights_in_order(&lights);
+    let mut lights = lights_in_order(&lights);
+    lights.truncate(kept_lights.0);
     let mut held = 0;
     for (entity, loaded, classified, texture, placement, lighting, shading, mut kept) in &mut volumes {
         if failure.stands_on(entity) {
@@ -119,18 +135,12 @@ pub(crate) fn run(
             continue;
         };
         let scene_from_texture = scene_from_texture(loaded, placement, &settings);
-        let texture_from_scene = scene_from_texture.inverse();
         let mut own = LightVolumes::default();
         let all = kept.as_mut().map_or(&mut own, |kept| kept.bypass_change_detection());
         let mut old = std::mem::take(&mut all.0);
         for (light, to_light) in &lights {
-            let cells = cells(&gpu, loaded.data.size, resolution);
-            let direction = texture_from_scene.transform_vector3(-*to_light);
-            let sweep = Sweep::new(cells, direction);
-            let slice = scene_from_texture.transform_vector3(sweep.step()).length();
-            let classified_version = classified.versions.extinction;
-            let recipe =
-                Recipe { sweep, slice, volume: texture.view.clone(), classified: classified_version };
+            let volume = (loaded, classified, texture);
+            let recipe = recipe(&gpu, volume, resolution, *to_light, scene_from_texture);
             let found =
                 old.iter().position(|volume| volume.light == *light).map(|index| old.swap_remove(index));
             if let Some(found) = found.filter(|found| found.recipe == recipe) {
@@ -139,14 +149,13 @@ pub(crate) fn run(
                 continue;
             }
             let timing = timer.as_mut().and_then(|timer| timer.time_compute("light_volume"));
-            let volume = (loaded, classified, texture);
             match gpu
                 .attempt("light_volume", || make(&gpu, &mut sweeper, volume, &recipe, timing, &mut report))
             {
                 Ok(grid) => {
                     sweeper.version += 1;
                     held += grid.bytes();
-                    all.0.push(LightVolume { light: *light, grid, sweep, recipe, version: sweeper.version });
+                    all.0.push(LightVolume::new(*light, grid, recipe, sweeper.version));
                 }
                 Err(error) => failure.on(entity, "light_volume", "VolumeLighting", error),
             }
@@ -172,6 +181,26 @@ pub(crate) fn scene_from_texture(
     placement.0 * DAffine3::from_scale(extent) * DAffine3::from_translation(DVec3::splat(-0.5))
 }
 
+/// What the light volume of a volume is made from, for a light in a direction.
+pub(crate) fn recipe(
+    gpu: &Gpu,
+    (loaded, classified, texture): (&LoadedVolume, &Classified, &VolumeTexture),
+    resolution: f32,
+    to_light: DVec3,
+    scene_from_texture: DAffine3,
+) -> Recipe {
+    let direction = scene_from_texture.inverse().transform_vector3(-to_light);
+    let sweep = Sweep::new(cells(gpu, loaded.data.size, resolution), direction);
+    let slice = scene_from_texture.transform_vector3(sweep.step()).length();
+    Recipe { sweep, slice, volume: texture.view.clone(), classified: classified.versions.extinction }
+}
+
+/// Bytes of the light volume of a volume of so many voxels, for light that travels in a direction given in the texture's space.
+pub(crate) fn bytes_of(gpu: &Gpu, size: [u32; 3], resolution: f32, direction: DVec3) -> u64 {
+    let texels = Sweep::new(cells(gpu, size, resolution), direction).size();
+    4 * texels.to_array().into_iter().map(u64::from).product::<u64>()
+}
+
 /// Cells along each axis of a volume.
 fn cells(gpu: &Gpu, size: [u32; 3], resolution: f32) -> UVec3 {
     // Columns beside the volume and the last slice take part of the texture.
@@ -180,7 +209,7 @@ fn cells(gpu: &Gpu, size: [u32; 3], resolution: f32) -> UVec3 {
     UVec3::from(size.map(along))
 }
 
-fn make(
+pub(crate) fn make(
     gpu: &Gpu,
     sweeper: &mut LightSweeper,
     (loaded, classified, texture): (&LoadedVolume, &Classified, &VolumeTexture),

@@ -32,6 +32,8 @@ pub(crate) struct Kinds {
     towards_eye: bool,
     /// Highlights in scattered light.
     highlights: bool,
+    /// Light that is scattered once, of lights that share a sum.
+    shared: bool,
     /// The lighting of each volume, where it is the same in all parts of the picture.
     of_volumes: Vec<Option<u32>>,
 }
@@ -55,6 +57,7 @@ impl Kinds {
             kinds.peak |= lit.kind == SCATTERS && lit.g > 0.0;
             kinds.towards_eye |= lit.kind == SCATTERS_TOWARDS_EYE;
             kinds.highlights |= often && lit.specular > 0.0;
+            kinds.shared |= once && lit.shares;
         }
         kinds.lights = if kinds.scattering { lights } else { 0 };
         kinds
@@ -72,6 +75,7 @@ impl Kinds {
             peak: true,
             towards_eye: true,
             highlights: true,
+            shared: true,
             of_volumes: vec![None, Some(SCATTERS)],
         }
     }
@@ -87,6 +91,7 @@ impl Kinds {
             ("ANY_PEAK", self.peak),
             ("ANY_TOWARDS_EYE", self.towards_eye),
             ("ANY_HIGHLIGHT", self.highlights),
+            ("ANY_SHARED", self.shared),
         ];
         let mut text = String::new();
         for (name, value) in constants {

@@ -7,6 +7,7 @@ pub mod combine;
 pub mod dimmed_gbuffer;
 pub mod eye_light;
 pub mod gbuffer;
+pub mod light_budget;
 pub mod light_cells;
 pub mod light_gbuffer;
 pub mod light_network;
@@ -20,6 +21,7 @@ pub mod raycast;
 pub mod scattered_light;
 pub mod scattered_radiosity;
 pub mod scattering_gbuffer;
+pub mod shared_light;
 pub mod summed_light;
 pub mod surface;
 pub mod surface_points;
@@ -50,17 +52,21 @@ impl Plugin for ScatteringPlugin {
             .init_resource::<light_network::NetworkMaker>()
             .init_resource::<scattered_light::Scatterer>()
             .init_resource::<summed_light::Adder>()
+            .init_resource::<light_budget::LightBudget>()
+            .init_resource::<light_budget::KeptLights>()
+            .init_resource::<shared_light::Sharer>()
             .init_resource::<eye_light::EyeSweeper>()
             .init_resource::<volume_shadow::VolumeShadowVersion>();
         app.add_systems(
             Update,
             (
                 (
-                    light_volume::run,
                     volume_shadow::run,
+                    light_budget::share_out,
+                    light_volume::run,
                     light_cells::run,
                     light_network::run,
-                    scattered_light::run,
+                    (scattered_light::run, shared_light::run).chain(),
                     summed_light::run,
                     eye_light::run,
                 )

@@ -14,6 +14,7 @@ use super::raycast::RayCaster;
 use super::scattered_light::{self, ScatteredLight};
 use super::scattered_radiosity::{self, ScatteredRadiosity};
 use super::scattering_gbuffer::{CameraMaps, TexelChooser};
+use super::shared_light::{SharedLight, Sharer};
 use super::summed_light::{Adder, SummedLight};
 use super::surface::Surface;
 use super::surface_points::SurfacePoints;
@@ -34,6 +35,7 @@ pub(crate) fn forget(world: &mut World, shaders: &BTreeSet<String>) {
     made_by::<VolumeShadows>(world, shaders, &["gbuffer"]);
     made_by::<LightCells>(world, shaders, &["light_cells"]);
     made_by::<ScatteredLight>(world, shaders, &["scattered_light"]);
+    made_by::<SharedLight>(world, shaders, &["shared_light", "light_volume", "scattered_light"]);
     made_by::<SummedLight>(world, shaders, &["summed_light"]);
     made_by::<EyeLight>(world, shaders, &["eye_light"]);
     made_by::<LightViews>(world, shaders, &["gbuffer", "dimmed_gbuffer"]);
@@ -54,7 +56,7 @@ fn made_by<Product: Component>(world: &mut World, shaders: &BTreeSet<String>, ow
 pub(crate) fn forget_device(world: &mut World) {
     remove_all::<(MeshBuffers, VolumeTexture, ClassifiedVoxels, PreintegratedPairs)>(world);
     remove_all::<(LightVolumes, VolumeShadows, LightCells, LightNetwork, ScatteredLight)>(world);
-    remove_all::<(SummedLight, EyeLight)>(world);
+    remove_all::<(SharedLight, SummedLight, EyeLight)>(world);
     remove_all::<(LightViews, SurfacePoints, CameraMaps, ScatteredRadiosity, Radiosity)>(world);
     world.remove_resource::<PassTimer>();
     reset::<Preclassifier>(world);
@@ -62,6 +64,7 @@ pub(crate) fn forget_device(world: &mut World) {
     reset::<CellAverager>(world);
     reset::<NetworkMaker>(world);
     reset::<scattered_light::Scatterer>(world);
+    reset::<Sharer>(world);
     reset::<Adder>(world);
     reset::<EyeSweeper>(world);
     reset::<Gbuffer>(world);

@@ -7,6 +7,7 @@
 use super::classification;
 use super::classify::{Classified, classify};
 use super::eye_light::EyeLight;
+use super::light_budget::KeptLights;
 use super::light_volume::{LightVolume, LightVolumes, lighting_in_force, lookup, scene_from_texture};
 use super::lighting::{EMITS, GRADIENT, Kinds, SCATTERS, SCATTERS_ONCE, SCATTERS_TOWARDS_EYE, UNLIT};
 use super::preclassify::{ClassifiedVoxels, Preclassifier, preclassify};
@@ -132,7 +133,7 @@ mirror! {
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
 /// Textures of the shader besides those of volumes.
-const OTHER_TEXTURES: u32 = 3;
+const OTHER_TEXTURES: usize = 3;
 
 /// Which binding has the volumes as they are drawn in a part of the picture.
 const INSTANCES: usize = 2;
@@ -169,7 +170,7 @@ fn run(
         Res<Picture>,
         Res<SceneSettings>,
     ),
-    (comparison, coarseness): (Res<Comparison>, Res<Coarseness>),
+    (comparison, coarseness, kept_lights): (Res<Comparison>, Res<Coarseness>, Res<KeptLights>),
     volumes: Query<VolumeQuery>,
     surface: Res<Surface>,
     mut caster: ResMut<RayCaster>,
@@ -178,8 +179,7 @@ fn run(
 ) {
     let mut volumes: Vec<_> = volumes.iter().collect();
     volumes.sort_by_key(|volume| volume.entity);
-    let limit = gpu.device.limits().max_sampled_textures_per_shader_stage - OTHER_TEXTURES;
-    if let Some(problem) = too_many(&volumes, limit) {
+    if let Some(problem) = too_many(&volumes, textures_for_volumes(&gpu)) {
         problems.0.push(problem);
         return;
     }
@@ -190,7 +190,8 @@ fn run(
     let timing = timer.as_mut().and_then(|timer| timer.time("raycast"));
     let parts = in_parts(&comparison, picture.size);
     let lit_in = |volume| parts.iter().map(|part| lit(volume, &settings, part.shading)).collect();
-    let kinds = Kinds::of(volumes.iter().map(lit_in).collect(), frame.light_count);
+    let lights = frame.light_count.min(kept_lights.0 as u32);
+    let kinds = Kinds::of(volumes.iter().map(lit_in).collect(), lights);
     let drawn = prepare(&gpu, &picture, kinds, &volumes, &frame, &mut caster, &mut report).map(|()| {
         let of_part = |part: Part| {
             let shading = part.shading;
@@ -203,13 +204,18 @@ fn run(
     failure.keep(drawn);
 }
 
+/// Textures that volumes and their light may have between them.
+pub(crate) fn textures_for_volumes(gpu: &Gpu) -> usize {
+    gpu.device.limits().max_sampled_textures_per_shader_stage as usize - OTHER_TEXTURES
+}
+
 /// What is told where volumes and their light volumes are more textures than can be bound.
-fn too_many(volumes: &[VolumeData], limit: u32) -> Option<Problem> {
+fn too_many(volumes: &[VolumeData], limit: usize) -> Option<Problem> {
     let classified =
         volumes.iter().filter(|volume| classification_of(volume) != Classification::Post).count();
     let scattered: usize = volumes.iter().map(|volume| scattered_of(volume).textures()).sum();
     let light = light_volumes(volumes).len() + shadows(volumes).iter().flatten().count() + scattered;
-    if volumes.len() + light + classified <= limit as usize {
+    if volumes.len() + light + classified <= limit {
         return None;
     }
     let mut message = format!("{} volumes are in the scene", volumes.len());
@@ -569,6 +575,7 @@ fn lit(volume: &VolumeData, settings: &SceneSettings, shading: Shading) -> Lit {
         // Nothing arrives where there is no light.
         lit.kind = UNLIT;
     }
+    lit.shares = volume.summed.is_some();
     if lit.kind == SCATTERS && volume.eye_light.is_some() {
         lit.kind = SCATTERS_TOWARDS_EYE;
     }
@@ -585,6 +592,8 @@ pub(super) struct Lit {
     shininess: f32,
     pub(super) g: f32,
     emission: f32,
+    /// Whether there is light of lights that share a sum.
+    pub(super) shares: bool,
 }
 
 impl Lit {

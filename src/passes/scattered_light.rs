@@ -48,10 +48,10 @@ struct Recipe {
 
 /// How a light crosses cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Source {
+pub(crate) struct Source {
     /// Along the axes of the volume, of unit length.
     travels: DVec3,
-    g: f32,
+    pub g: f32,
     /// Which axes count: all, or the nearest.
     axes: DVec3,
 }
@@ -84,7 +84,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
 impl Source {
     /// For light that travels in a direction, given in the texture's space.
-    fn new(lighting: &VolumeLighting, direction: DVec3, scene_from_texture: DAffine3) -> Self {
+    pub fn new(lighting: &VolumeLighting, direction: DVec3, scene_from_texture: DAffine3) -> Self {
         let VolumeLighting::LightVolume { blend, g, .. } = *lighting else {
             unreachable!("only light volumes have cells")
         };
@@ -130,7 +130,7 @@ pub(crate) fn run(
     mut commands: Commands,
     (gpu, settings): (Res<Gpu>, Res<SceneSettings>),
     mut volumes: Volumes,
-    former: Query<Entity, (With<ScatteredLight>, Without<LightCells>)>,
+    former: Query<Entity, (With<ScatteredLight>, Without<LightNetwork>)>,
     mut scatterer: ResMut<Scatterer>,
     (mut timer, mut report, mut failure): (Option<ResMut<PassTimer>>, ResMut<Report>, ResMut<Failure>),
 ) {
@@ -186,7 +186,7 @@ pub(crate) fn run(
     report.hold("scattered_light", held);
 }
 
-fn scatter(
+pub(crate) fn scatter(
     gpu: &Gpu,
     scatterer: &mut Scatterer,
     (cells, network): (&LightCells, &LightNetwork),

@@ -9,6 +9,7 @@ mod kernels;
 
 use super::body::Body;
 use super::gbuffer::Gbuffer;
+use super::light_budget::LightBudget;
 use super::light_gbuffer::LightViews;
 use super::medium::{Dipole, LEAST_DISTANCE, MediumUniform};
 use super::scattering_gbuffer::{self, CameraMaps, TexelChooser};
@@ -52,9 +53,6 @@ struct Recipe {
     irradiance: Option<Vec3>,
 }
 
-/// Bytes of the layers of a mesh, at most. Beyond that the lights share one, and a change of any light's colour computes all anew.
-const BUDGET: u64 = 64 << 20;
-
 /// How far the light that leaves translucent meshes is refined while nothing changes: each further set of samples, with cameras elsewhere,
 /// is averaged with those before. Meshes with `progressive: false` have one set.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,7 +86,7 @@ type Bodies<'w, 's> = Query<
 
 pub(crate) fn run(
     mut commands: Commands,
-    (gpu, refinement): (Res<Gpu>, Res<Refinement>),
+    (gpu, refinement, budget): (Res<Gpu>, Res<Refinement>, Res<LightBudget>),
     lights: Query<&DirectionalLight>,
     mut bodies: Bodies,
     mut tools: (ResMut<Scatterer>, ResMut<Gbuffer>, ResMut<TexelChooser>),
@@ -96,13 +94,14 @@ pub(crate) fn run(
     (mut report, mut failure): (ResMut<Report>, ResMut<Failure>),
 ) {
     let irradiance = |light: Entity| lights.get(light).map_or(Vec3::ZERO, |light| light.irradiance);
-    let mut held = 0;
+    let (mut held, mut sharing) = (0, 0);
     for (entity, body, subsurface, maps, (points, mesh), views, cameras, mut radiosity) in &mut bodies {
         if failure.stands_on(entity) {
             continue;
         }
         let layer = 16 * u64::from(points.count);
-        let is_shared = layer * views.0.len() as u64 > BUDGET;
+        let is_shared = layer * views.0.len() as u64 > budget.mesh;
+        sharing = sharing.max(if is_shared { views.0.len() } else { 0 });
         let size = if is_shared { layer } else { layer * views.0.len().max(1) as u64 };
         held += size;
         let mut new = None;
@@ -127,6 +126,7 @@ pub(crate) fn run(
         }
     }
     report.hold("scattered_radiosity", held);
+    report.share("scattered_radiosity", sharing);
 }
 
 /// Of how many sets of samples the mesh that has fewest is the mean, and how many are wanted; none where no mesh is to be refined.

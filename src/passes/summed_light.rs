@@ -1,9 +1,10 @@
 //! Scattered light of all lights together, as the ray caster looks it up.
 //!
-//! Reads [`ScatteredLight`] and the irradiance of the lights; writes [`SummedLight`], rgba16float, one texel a cell: the fluence. Reruns when either changes; a light's colour changes nothing before this pass.
+//! Reads [`ScatteredLight`], [`SharedLight`] and the irradiance of the lights; writes [`SummedLight`], rgba16float, one texel a cell: the fluence. Reruns when either changes; a light's colour changes nothing before this pass.
 
 use super::light_cells::LightCells;
-use super::scattered_light::ScatteredLight;
+use super::scattered_light::{ScatteredLayer, ScatteredLight};
+use super::shared_light::SharedLight;
 use crate::components::DirectionalLight;
 use crate::failure::Failure;
 use crate::gpu::{
@@ -53,8 +54,17 @@ pub(crate) struct Adder {
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-type Volumes<'w, 's> =
-    Query<'w, 's, (Entity, &'static LightCells, &'static ScatteredLight, Option<&'static SummedLight>)>;
+type Volumes<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static LightCells,
+        Option<&'static ScatteredLight>,
+        Option<&'static SharedLight>,
+        Option<&'static SummedLight>,
+    ),
+>;
 
 pub(crate) fn run(
     mut commands: Commands,
@@ -69,13 +79,19 @@ pub(crate) fn run(
         commands.entity(entity).remove::<SummedLight>();
     }
     let mut held = 0;
-    for (entity, cells, scattered, kept) in &volumes {
+    for (entity, cells, scattered, shared, kept) in &volumes {
         if failure.stands_on(entity) {
             continue;
         }
         let irradiance = |light| lights.get(light).map_or(Vec3::ZERO, |light| light.irradiance);
-        let irradiances: Vec<Vec3> = scattered.0.iter().map(|layer| irradiance(layer.light)).collect();
-        let versions: Vec<u64> = scattered.0.iter().map(|layer| layer.version).collect();
+        let layers = scattered.map_or(&[][..], |scattered| scattered.0.as_slice());
+        if layers.is_empty() && shared.is_none() {
+            commands.entity(entity).remove::<SummedLight>();
+            continue;
+        }
+        let irradiances: Vec<Vec3> = layers.iter().map(|layer| irradiance(layer.light)).collect();
+        let versions: Vec<u64> =
+            layers.iter().map(|layer| layer.version).chain(shared.map(|shared| shared.version)).collect();
         let made = (versions, irradiances);
         if let Some(kept) = kept.filter(|kept| kept.made == made) {
             held += kept.fluence.bytes();
@@ -83,7 +99,7 @@ pub(crate) fn run(
         }
         let timing = timer.as_mut().and_then(|timer| timer.time_compute("summed_light"));
         match gpu.attempt("summed_light", || {
-            sum(&gpu, &mut adder, cells.grid.size(), scattered, made, timing, &mut report)
+            sum(&gpu, &mut adder, cells.grid.size(), (layers, shared), made, timing, &mut report)
         }) {
             Ok(summed) => {
                 held += summed.fluence.bytes();
@@ -99,7 +115,7 @@ fn sum(
     gpu: &Gpu,
     adder: &mut Adder,
     cells: UVec3,
-    scattered: &ScatteredLight,
+    (scattered, shared): (&[ScatteredLayer], Option<&SharedLight>),
     made: (Vec<u64>, Vec<Vec3>),
     timing: Option<wgpu::ComputePassTimestampWrites>,
     report: &mut Report,
@@ -109,22 +125,25 @@ fn sum(
         report.pipelines.push("summed_light");
     }
     let (_, irradiances) = &made;
-    let scale = irradiances.iter().map(|irradiance| irradiance.max_element()).fold(0.0, f32::max);
+    let all = irradiances.iter().copied().chain(shared.map(|shared| shared.irradiance));
+    let scale = all.map(Vec3::max_element).fold(0.0, f32::max);
     let fluence = Grid::new(gpu, "fluence", cells, FORMAT)?;
     let mut factors: Vec<Vec4> = irradiances
         .iter()
         .map(|irradiance| (*irradiance / scale.max(f32::MIN_POSITIVE)).extend(0.0))
         .collect();
-    // A buffer cannot be empty.
-    factors.push(Vec4::ZERO);
+    // What lights share has their irradiance already.
+    factors.extend(shared.map(|_| Vec3::splat(scale.max(f32::MIN_POSITIVE).recip()).extend(0.0)));
+    let count_of_layers = factors.len();
     let factors = storage_of(gpu, "irradiances", bytemuck::cast_slice(&factors));
     let count = u64::from(cells.element_product());
-    let layers = storage(gpu, "layers of lights", 16 * count * scattered.0.len().max(1) as u64);
-    let uniform = SummationUniform { cells, lights: irradiances.len() as u32 };
+    let layers = storage(gpu, "layers of lights", 16 * count * count_of_layers as u64);
+    let uniform = SummationUniform { cells, lights: count_of_layers as u32 };
     let uniform = uniform_buffer(gpu, "summation", &uniform);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    for (index, layer) in scattered.0.iter().enumerate() {
-        encoder.copy_buffer_to_buffer(&layer.cells, 0, &layers, 16 * count * index as u64, 16 * count);
+    let buffers = scattered.iter().map(|layer| &layer.cells).chain(shared.map(|shared| &shared.cells));
+    for (index, buffer) in buffers.enumerate() {
+        encoder.copy_buffer_to_buffer(buffer, 0, &layers, 16 * count * index as u64, 16 * count);
     }
     let resources = [
         uniform.as_entire_binding(),
@@ -138,7 +157,7 @@ fn sum(
     gpu.queue.submit([encoder.finish()]);
     report.ran("summed_light", &[("cells", count)]);
     adder.version += 1;
-    let lights = scattered.0.iter().map(|layer| layer.light).collect();
+    let lights = scattered.iter().map(|layer| layer.light).collect();
     Ok(SummedLight { fluence, scale, made, lights, version: adder.version })
 }
 

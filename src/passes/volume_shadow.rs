@@ -6,8 +6,8 @@
 use super::body::Body;
 use super::gbuffer::{FORMAT, Fit, Gbuffer, OrthographicView, seen_box};
 use super::light_gbuffer::{Blocker, Meshes, blockers};
-use super::light_volume::{LightVolumes, scene_from_texture};
-use crate::components::{DirectionalLight, Motion, Placement, SceneSettings};
+use super::light_volume::{lighting_in_force, scene_from_texture};
+use crate::components::{DirectionalLight, Motion, Placement, SceneSettings, Shading, VolumeLighting};
 use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, PassTimer, Target, binding, uniform_array};
 use crate::loading::LoadedVolume;
@@ -60,15 +60,20 @@ impl VolumeShadows {
 type Volumes<'w, 's> = Query<
     'w,
     's,
-    (Entity, &'static LoadedVolume, &'static Placement, Option<&'static mut VolumeShadows>),
-    With<LightVolumes>,
+    (
+        Entity,
+        &'static LoadedVolume,
+        &'static Placement,
+        (&'static VolumeLighting, Option<&'static Shading>),
+        Option<&'static mut VolumeShadows>,
+    ),
 >;
 
 pub(crate) fn run(
     mut commands: Commands,
     (gpu, settings): (Res<Gpu>, Res<SceneSettings>),
     (mut volumes, meshes): (Volumes, Meshes),
-    former: Query<Entity, (With<VolumeShadows>, Without<LightVolumes>)>,
+    former: Query<Entity, (With<VolumeShadows>, Or<(Without<LoadedVolume>, Without<VolumeLighting>)>)>,
     lights: Query<(Entity, &DirectionalLight, Option<&Motion>)>,
     (mut gbuffer, mut version): (ResMut<Gbuffer>, ResMut<VolumeShadowVersion>),
     (mut timer, mut report, mut failure): (Option<ResMut<PassTimer>>, ResMut<Report>, ResMut<Failure>),
@@ -77,8 +82,12 @@ pub(crate) fn run(
         commands.entity(entity).remove::<VolumeShadows>();
     }
     let mut held = 0;
-    for (entity, loaded, placement, mut kept) in &mut volumes {
+    for (entity, loaded, placement, (lighting, shading), mut kept) in &mut volumes {
         if failure.stands_on(entity) {
+            continue;
+        }
+        if lighting_in_force(lighting, shading, &settings).light_resolution().is_none() {
+            commands.entity(entity).remove::<VolumeShadows>();
             continue;
         }
         let mut own = VolumeShadows::default();

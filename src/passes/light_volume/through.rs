@@ -113,6 +113,10 @@ pub(crate) fn modules(count: VeilCount, filtering: Filtering, first: usize) -> [
 @group(0) @binding({binding}) var<uniform> texture_from_here: array<mat4x4f, {volumes}>;
 fn through_volumes(position: vec3f, light: u32) -> f32 {{
     var left = 1.0;
+    // Others have no light volume of their own.
+    if light >= {lights}u {{
+        return left;
+    }}
     for (var volume = 0u; volume < {volumes}u; volume += 1u) {{
         let index = volume * {lights}u + light;
         let place = (texture_from_here[volume] * vec4f(position, 1.0)).xyz;
