@@ -197,3 +197,35 @@ fn a_picture_does_not_depend_on_the_scenes_before_it() {
         assert!(changes.is_empty(), "{}", changes.join("\n"));
     }
 }
+
+/// While a picture is to follow a hand, light that is to be found anew is found coarsely; what is there in full stays, and is what there is
+/// again afterwards.
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn coarse_light_is_for_the_moment() {
+    let mut studio = Studio::new();
+    let scene = |degrees: f64| {
+        format!(
+            "(entities: {{ {} \"ball\": ( Mesh: Sphere(subdivisions: 3), Subsurface: (material: {}), {MAPS} ) }})",
+            sun(degrees),
+            medium()
+        )
+    };
+    let full = studio.radiance(&scene(20.0), 24, 24);
+    let before = runs(&studio);
+    let coarse = tyndall::Coarseness { light: 0.35, ..Default::default() };
+    studio.app.insert_resource(coarse);
+    assert_eq!(difference(&full, &studio.radiance(&scene(20.0), 24, 24)), 0.0);
+    assert_eq!(runs(&studio), before);
+    let moved = studio.radiance(&scene(40.0), 24, 24);
+    assert_eq!(added(before, runs(&studio)), [0, 1, 1, 1]);
+    studio.radiance(&scene(40.0), 24, 24);
+    assert_eq!(added(before, runs(&studio)), [0, 1, 1, 1]);
+    studio.app.insert_resource(tyndall::Coarseness::default());
+    let settled = studio.radiance(&scene(40.0), 24, 24);
+    assert_eq!(added(before, runs(&studio)), [0, 2, 2, 2]);
+    assert_eq!(difference(&settled, &Studio::new().radiance(&scene(40.0), 24, 24)), 0.0);
+    // Near enough for the moment: noisier, and as bright.
+    let brightness = mean(&moved)[0] / mean(&settled)[0];
+    assert!((brightness - 1.0).abs() < 0.05, "{brightness}");
+}

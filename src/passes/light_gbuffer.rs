@@ -14,7 +14,7 @@ use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, PassTimer, Target};
 use crate::loading::LoadedMesh;
 use crate::report::Report;
-use crate::view::lights_in_order;
+use crate::view::{Coarseness, lights_in_order};
 use bevy_ecs::prelude::*;
 use glam::{DAffine3, DVec3};
 
@@ -92,7 +92,8 @@ type Bodies<'w, 's> = Query<
 
 pub(crate) fn run(
     mut commands: Commands,
-    (gpu, wanted, settings, shading): (Res<Gpu>, Res<LightTexels>, Res<SceneSettings>, Shading),
+    (gpu, settings, shading): (Res<Gpu>, Res<SceneSettings>, Shading),
+    (wanted, coarseness): (Res<LightTexels>, Res<Coarseness>),
     mut bodies: Bodies,
     meshes: Meshes,
     lights: Query<(Entity, &DirectionalLight, Option<&Motion>)>,
@@ -101,7 +102,8 @@ pub(crate) fn run(
 ) {
     let lights = lights_in_order(&lights);
     let affordable = (BUDGET / 16 / lights.len().max(1) as u64).isqrt() as u32;
-    let texels = wanted.0.min(affordable).max(16);
+    let in_full = wanted.0.min(affordable).max(16);
+    let coarse = ((in_full as f32 * coarseness.light) as u32).max(16);
     let mut held = 0;
     for (entity, body, buffers, placement, mesh, mut views) in &mut bodies {
         if failure.stands_on(entity) {
@@ -114,9 +116,9 @@ pub(crate) fn run(
             let seen = seen_box(OrthographicView::rotation(*to_light), body, placement, mesh.bounds);
             let blockers = blockers(body, *to_light, seen, entity, &meshes);
             let veils = Veils::gather(&shading, &settings, Some(*light));
-            let recipe = Recipe {
+            let mut recipe = Recipe {
                 to_light: *to_light,
-                texels,
+                texels: in_full,
                 body: *body,
                 mesh: buffers.clone(),
                 blockers,
@@ -124,7 +126,9 @@ pub(crate) fn run(
             };
             let index = old.iter().position(|view| view.light == *light);
             let view = index.map(|index| old.swap_remove(index));
-            if let Some(view) = view.filter(|view| view.recipe == recipe) {
+            let is_full = view.as_ref().is_some_and(|view| view.recipe == recipe);
+            recipe.texels = coarse;
+            if let Some(view) = view.filter(|view| is_full || view.recipe == recipe) {
                 held += view.target.bytes();
                 kept.0.push(view);
                 continue;

@@ -20,6 +20,7 @@ use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, PassTimer, storage};
 use crate::loading::LoadedMesh;
 use crate::report::Report;
+use crate::view::Coarseness;
 use bevy_ecs::prelude::*;
 use glam::Vec3;
 use job::{Destination, Job};
@@ -52,6 +53,9 @@ struct Recipe {
     /// Of the light, where all lights share a layer.
     irradiance: Option<Vec3>,
 }
+
+/// Samples of a point while the picture is to follow a hand, at least.
+const FEWEST_SAMPLES: u32 = 16;
 
 /// How far the light that leaves translucent meshes is refined while nothing changes: each further set of samples, with cameras elsewhere,
 /// is averaged with those before. Meshes with `progressive: false` have one set.
@@ -86,7 +90,7 @@ type Bodies<'w, 's> = Query<
 
 pub(crate) fn run(
     mut commands: Commands,
-    (gpu, refinement, budget): (Res<Gpu>, Res<Refinement>, Res<LightBudget>),
+    (gpu, refinement, coarseness, budget): (Res<Gpu>, Res<Refinement>, Res<Coarseness>, Res<LightBudget>),
     lights: Query<&DirectionalLight>,
     mut bodies: Bodies,
     mut tools: (ResMut<Scatterer>, ResMut<Gbuffer>, ResMut<TexelChooser>),
@@ -114,10 +118,12 @@ pub(crate) fn run(
         };
         kept.keep_dipole(subsurface);
         let medium = kept.dipole.2.uniform(LEAST_DISTANCE, body.millimetres);
-        let job = Job { gpu: &gpu, body, maps, points, mesh, medium: &medium, model: subsurface.model };
+        let coarse = coarser(maps, coarseness.light);
+        let job =
+            Job { gpu: &gpu, body, maps: &coarse, points, mesh, medium: &medium, model: subsurface.model };
         let asked = (*refinement, &irradiance as &dyn Fn(Entity) -> Vec3);
         let timer = timer.as_deref_mut();
-        let refined = || kept.refine(&job, views, cameras, asked, &mut tools, timer, &mut report);
+        let refined = || kept.refine(&job, maps, views, cameras, asked, &mut tools, timer, &mut report);
         if let Err(error) = gpu.attempt("scattered_radiosity", refined) {
             failure.on(entity, "scattered_radiosity", "Subsurface", error);
         }
@@ -136,6 +142,12 @@ pub(crate) fn refined(world: &mut World, wanted: u32) -> Option<(u32, u32)> {
     let sets = |radiosity: &ScatteredRadiosity| radiosity.made.iter().map(|(_, sets)| *sets).min();
     let fewest = progressive.filter_map(|(_, radiosity)| radiosity.map_or(Some(0), sets)).min()?;
     Some((fewest.min(wanted), wanted))
+}
+
+/// The same maps with fewer samples: a share of `light` squared, but no fewer than a picture takes that nobody takes for another.
+fn coarser(maps: &ScatteringMaps, light: f32) -> ScatteringMaps {
+    let samples = (maps.samples as f32 * light * light) as u32;
+    ScatteringMaps { samples: samples.max(FEWEST_SAMPLES).min(maps.samples), ..maps.clone() }
 }
 
 impl ScatteredRadiosity {
@@ -165,6 +177,7 @@ impl ScatteredRadiosity {
     fn refine(
         &mut self,
         job: &Job,
+        in_full: &ScatteringMaps,
         views: &LightViews,
         cameras: Option<&CameraMaps>,
         (refinement, irradiance): (Refinement, &dyn Fn(Entity) -> Vec3),
@@ -179,10 +192,10 @@ impl ScatteredRadiosity {
         self.made.truncate(views.0.len());
         let wanted = if job.maps.progressive { refinement.sets.max(1) } else { 1 };
         let self_shared = self.is_shared;
-        let recipe = |layer: usize| Recipe {
+        let recipe = |layer: usize, maps: &ScatteringMaps| Recipe {
             view: views.0[layer].version,
             points: job.points.mesh.clone(),
-            maps: job.maps.clone(),
+            maps: maps.clone(),
             cameras: cameras.map(|maps| maps.recipe.clone()),
             medium: job.medium.clone(),
             irradiance: self_shared.then(|| irradiance(views.0[layer].light)),
@@ -191,7 +204,10 @@ impl ScatteredRadiosity {
             // Layers start again with what they are made from, so they can be at different sets; lights that share one start together.
             let mut sets: Vec<u32> = (0..views.0.len())
                 .map(|layer| {
-                    self.made.get(layer).filter(|made| made.0 == recipe(layer)).map_or(0, |made| made.1)
+                    let is_good = |made: &&(Recipe, u32)| {
+                        [in_full, job.maps].iter().any(|maps| made.0 == recipe(layer, maps))
+                    };
+                    self.made.get(layer).filter(is_good).map_or(0, |made| made.1)
                 })
                 .collect();
             if self.is_shared && sets.contains(&0) {
@@ -225,7 +241,7 @@ impl ScatteredRadiosity {
                     },
                 };
                 job.run(&mut tools.0, view, maps, to, &self.layers, timer.as_deref_mut(), report)?;
-                let made = (recipe(layer), set + 1);
+                let made = (recipe(layer, job.maps), set + 1);
                 match self.made.get_mut(layer) {
                     Some(place) => *place = made,
                     None => self.made.push(made),

@@ -17,7 +17,7 @@ use crate::gpu::{Gpu, GpuError, Layers, PassTimer, Target};
 use crate::loading::LoadedMesh;
 use crate::report::Report;
 use crate::scene::{Problem, Problems};
-use crate::view::Picture;
+use crate::view::{Coarseness, Picture};
 use bevy_ecs::prelude::*;
 pub use cameras::AutomaticCamera;
 pub(crate) use cameras::spawn_cameras;
@@ -84,7 +84,7 @@ type Mapped<'a> = (
 /// Makes the maps that are missing or stale.
 pub(crate) fn run(
     mut commands: Commands,
-    (gpu, picture): (Res<Gpu>, Res<Picture>),
+    (gpu, picture, coarseness): (Res<Gpu>, Res<Picture>, Res<Coarseness>),
     bodies: Query<Mapped>,
     (cameras, former): (Cameras, Query<Entity, (With<CameraMaps>, Without<ScatteringCameras>)>),
     (mut gbuffer, mut chooser): (ResMut<Gbuffer>, ResMut<TexelChooser>),
@@ -111,7 +111,11 @@ pub(crate) fn run(
             count: points.count,
             by_hand,
             automatic,
-            size: size(maps, points, &picture),
+            // A picture that is to follow a hand is smaller for a while; maps that are there will do.
+            size: match made.filter(|_| coarseness.light < 1.0) {
+                Some(made) => made.recipe.size,
+                None => size(maps, points, &picture),
+            },
             bias: match maps.bias {
                 Auto::Auto => None,
                 Auto::Value(bias) => Some(bias),

@@ -14,6 +14,11 @@ pub(super) fn show(ui: &mut Ui, world: &mut World, commands: &mut Vec<Command>) 
             ui.separator();
             ui.vertical(|ui| {
                 Grid::new("memory").striped(true).num_columns(2).show(ui, |ui| memory(ui, &report));
+                Grid::new("times").striped(true).num_columns(2).show(ui, |ui| times(ui, &report));
+                for (pass, lights) in &report.sharing_lights {
+                    let tip = "There is not enough memory, or there are not enough textures, to keep what each of them brings: a change of one makes all of it anew";
+                    ui.label(format!("{lights} lights share one sum of {pass}")).on_hover_text(tip);
+                }
                 let tip = "Give up all that is on the graphics device and make it again on another, as is done by itself when the driver loses it";
                 if ui.button("Reopen the device").on_hover_text(tip).clicked() {
                     commands.push(Command::ReopenDevice);
@@ -61,6 +66,18 @@ fn memory(ui: &mut Ui, report: &Report) {
     ui.strong("all of it");
     ui.strong(mebibytes(report.gpu_bytes.values().copied().fold(0, u64::saturating_add)));
     ui.end_row();
+}
+
+fn times(ui: &mut Ui, report: &Report) {
+    let tip = "From what changed in a file to the picture that shows it, part by part; without a change of files passes and drawing alone";
+    ui.strong("the last picture").on_hover_text(tip);
+    ui.strong("ms");
+    ui.end_row();
+    for (part, milliseconds) in &report.timeline {
+        ui.label(*part);
+        ui.label(format!("{milliseconds:.1}"));
+        ui.end_row();
+    }
 }
 
 /// A number in three digits or so.

@@ -57,11 +57,14 @@ pub struct FreeCamera(pub Option<Viewpoint>);
 pub struct Coarseness {
     /// Factor on the steps of rays through volumes, but for those that are pre-integrated: their tables hold for one length of step.
     pub step: f32,
+    /// Share of the texels, along each side, of a light's view of a translucent mesh, and the root of the share of samples of the light that
+    /// leaves it, where either is to be made anew. What is there in full stays.
+    pub light: f32,
 }
 
 impl Default for Coarseness {
     fn default() -> Self {
-        Self { step: 1.0 }
+        Self { step: 1.0, light: 1.0 }
     }
 }
 

@@ -10,6 +10,7 @@ use super::stale::Drawn;
 use crate::gpu::Gpu;
 use crate::passes::tonemap::Tonemap;
 use crate::render::replace_device;
+use crate::report::Report;
 use crate::scene::{LiveScene, Problem, Reload};
 use crate::ui::{self, Command, Laid, Level, Log, PictureFile, Shown};
 use crate::view::{FreeCamera, Picture, SceneBounds, View, bounds_of};
@@ -57,6 +58,8 @@ pub struct Session {
     wanted: Vec<PictureFile>,
     pictures: u64,
     frames: u64,
+    /// Whether files have been read since the picture was drawn.
+    has_reloaded: bool,
     /// Devices that were lost.
     lost: usize,
 }
@@ -103,6 +106,7 @@ impl Session {
             wanted: Vec::new(),
             pictures: 0,
             frames: 0,
+            has_reloaded: false,
             lost: 0,
         };
         session.tell_problems();
@@ -141,6 +145,9 @@ impl Session {
 
     /// Reads the scene again if its files have changed, and says whether it did. Asks for no picture itself: [`Self::frame`] does if one is due.
     pub fn poll(&mut self) -> bool {
+        if !self.has_reloaded {
+            self.app.world_mut().resource_mut::<Report>().timeline.clear();
+        }
         match self.scene.poll(&mut self.app) {
             Reload::Nothing => return false,
             Reload::Refused { .. } => {
@@ -148,6 +155,7 @@ impl Session {
             }
             Reload::Reloaded { .. } => self.log.tell(Level::Info, "the scene was read again"),
         }
+        self.has_reloaded = true;
         // Files and shaders leave no mark on components.
         self.drawn = Drawn::default();
         self.told.clear();

@@ -16,6 +16,9 @@ use std::time::{Duration, Instant};
 /// How long nothing must change before what moved is drawn in full.
 const SETTLE: Duration = Duration::from_millis(200);
 
+/// How coarsely the light in translucent meshes is found at first, where it is to be found anew.
+const COARSE_LIGHT: f32 = 0.35;
+
 /// Sets of samples to which translucent meshes are refined while nothing changes.
 const SETS: u32 = 16;
 
@@ -51,14 +54,14 @@ impl Session {
 
     /// Sets how the picture is to be drawn.
     fn ask(&mut self, is_coarse: bool) {
-        let (size, step) = match is_coarse {
-            true => (self.pace.size(self.room), self.pace.step()),
-            false => (self.room, 1.0),
+        let (size, coarseness) = match is_coarse {
+            true => (self.pace.size(self.room), Coarseness { step: self.pace.step(), light: COARSE_LIGHT }),
+            false => (self.room, Coarseness::default()),
         };
         let world = self.app.world_mut();
         let picture = Picture { size, ..world.resource::<Picture>().clone() };
         world.resource_mut::<Picture>().set_if_neq(picture);
-        world.resource_mut::<Coarseness>().set_if_neq(Coarseness { step });
+        world.resource_mut::<Coarseness>().set_if_neq(coarseness);
         let sets = if is_coarse { 1 } else { SETS };
         world.resource_mut::<Refinement>().set_if_neq(Refinement { sets, per_update: 1 });
     }
@@ -110,11 +113,15 @@ impl Session {
     fn update(&mut self) {
         let world = self.app.world_mut();
         let measure = world.resource::<OpenPanels>().report;
-        prepare_report(world, measure);
+        prepare_report(world, measure, std::mem::take(&mut self.has_reloaded));
+        let started = Instant::now();
         self.app.update();
         let world = self.app.world_mut();
+        world.resource_mut::<Report>().spent("passes", started);
+        let started = Instant::now();
         let failure = world.resource_mut::<Failure>().take();
         let waited = world.resource::<Gpu>().wait("drawing").and_then(|()| collect_times(world));
+        world.resource_mut::<Report>().spent("draw", started);
         let failure = failure.or(waited.err()).map(|error| error.to_string());
         if let Some(failure) = &failure {
             log::error!("{failure}");
@@ -127,11 +134,13 @@ impl Session {
     }
 }
 
-/// Makes the report that of the picture to come.
-fn prepare_report(world: &mut World, measure: bool) {
+/// Makes the report that of the picture to come, to which the reading of what it shows belongs.
+fn prepare_report(world: &mut World, measure: bool, has_reloaded: bool) {
     let mut report = world.resource_mut::<Report>();
     report.passes.clear();
-    report.timeline.clear();
+    if !has_reloaded {
+        report.timeline.clear();
+    }
     report.measure = measure;
     if !measure {
         world.remove_resource::<PassTimer>();
