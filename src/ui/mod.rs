@@ -41,7 +41,7 @@ pub use log::{Level, Line, Log};
 pub use panels::{Laid, panels};
 pub use problems::SceneProblems;
 pub use sections::{Section, Sections};
-pub use state::{OpenPanels, Selection, Shown, Totals, init};
+pub use state::{LastReload, OpenPanels, Selection, Shown, Totals, init};
 pub use transfer_function::{
     Preset, TransferFunctionData, TransferFunctionEditor, TransferFunctionFileError, read_transfer_function,
     write_transfer_function,

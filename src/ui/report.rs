@@ -1,6 +1,6 @@
 //! What the last picture took: passes, times, memory.
 
-use super::{Command, Totals};
+use super::{Command, LastReload, Totals};
 use crate::report::{PassRecord, Report};
 use bevy_ecs::prelude::*;
 use egui::{Grid, ScrollArea, Ui};
@@ -8,13 +8,19 @@ use egui::{Grid, ScrollArea, Ui};
 pub(super) fn show(ui: &mut Ui, world: &mut World, commands: &mut Vec<Command>) {
     let totals = world.get_resource_or_init::<Totals>().clone();
     let report = world.get_resource_or_init::<Report>().clone();
+    let reload = world.get_resource_or_init::<LastReload>().0.clone();
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         ui.horizontal_top(|ui| {
             Grid::new("passes").striped(true).num_columns(5).show(ui, |ui| passes(ui, &report, &totals));
             ui.separator();
+            Grid::new("memory").striped(true).num_columns(2).show(ui, |ui| memory(ui, &report));
+            ui.separator();
             ui.vertical(|ui| {
-                Grid::new("memory").striped(true).num_columns(2).show(ui, |ui| memory(ui, &report));
-                Grid::new("times").striped(true).num_columns(2).show(ui, |ui| times(ui, &report));
+                Grid::new("times").striped(true).num_columns(2).show(ui, |ui| {
+                    times(ui, "the last picture", "What it took the processor, and then the device", &report.timeline);
+                    let tip = "From the first sign of a change to the first picture that shows it, coarse as it may be";
+                    times(ui, "after the last change of files", tip, &reload);
+                });
                 for (pass, lights) in &report.sharing_lights {
                     let tip = "There is not enough memory, or there are not enough textures, to keep what each of them brings: a change of one makes all of it anew";
                     ui.label(format!("{lights} lights share one sum of {pass}")).on_hover_text(tip);
@@ -68,12 +74,14 @@ fn memory(ui: &mut Ui, report: &Report) {
     ui.end_row();
 }
 
-fn times(ui: &mut Ui, report: &Report) {
-    let tip = "From what changed in a file to the picture that shows it, part by part; without a change of files passes and drawing alone";
-    ui.strong("the last picture").on_hover_text(tip);
+fn times(ui: &mut Ui, head: &str, tip: &str, timeline: &[(&'static str, f64)]) {
+    if timeline.is_empty() {
+        return;
+    }
+    ui.strong(head).on_hover_text(tip);
     ui.strong("ms");
     ui.end_row();
-    for (part, milliseconds) in &report.timeline {
+    for (part, milliseconds) in timeline {
         ui.label(*part);
         ui.label(format!("{milliseconds:.1}"));
         ui.end_row();

@@ -36,6 +36,10 @@ pub struct Selection(pub Option<Entity>);
 #[derive(Resource, Clone, Debug, Default)]
 pub struct Totals(pub BTreeMap<&'static str, u64>);
 
+/// The parts of the way from files that changed to the picture that shows them first, in milliseconds, as far as any have changed.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct LastReload(pub Vec<(&'static str, f64)>);
+
 /// What the window has to show.
 #[derive(Clone, Debug, Default)]
 pub struct Shown {

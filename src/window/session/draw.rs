@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, PassTimer};
 use crate::passes::scattered_radiosity::refined;
 use crate::report::Report;
-use crate::ui::{Level, OpenPanels, Totals};
+use crate::ui::{LastReload, Level, OpenPanels, Totals};
 use crate::view::{Coarseness, Drawing, Picture};
 use crate::window::screenshot;
 use bevy_ecs::prelude::*;
@@ -113,7 +113,8 @@ impl Session {
     fn update(&mut self) {
         let world = self.app.world_mut();
         let measure = world.resource::<OpenPanels>().report;
-        prepare_report(world, measure, std::mem::take(&mut self.has_reloaded));
+        let has_reloaded = std::mem::take(&mut self.has_reloaded);
+        prepare_report(world, measure, has_reloaded);
         let started = Instant::now();
         self.app.update();
         let world = self.app.world_mut();
@@ -122,6 +123,10 @@ impl Session {
         let failure = world.resource_mut::<Failure>().take();
         let waited = world.resource::<Gpu>().wait("drawing").and_then(|()| collect_times(world));
         world.resource_mut::<Report>().spent("draw", started);
+        if has_reloaded {
+            let timeline = world.resource::<Report>().timeline.clone();
+            world.insert_resource(LastReload(timeline));
+        }
         let failure = failure.or(waited.err()).map(|error| error.to_string());
         if let Some(failure) = &failure {
             log::error!("{failure}");
