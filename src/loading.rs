@@ -6,6 +6,7 @@ use crate::scene::{EntityProblems, Problem};
 use crate::sources::trail::{self, FileState, Trail};
 use crate::sources::{self, LayoutError, MeshData, MeshStatistics, RawLayout, SourceError, VolumeData};
 use bevy_app::{App, Plugin, Update};
+use bevy_ecs::component::Mutable;
 use bevy_ecs::prelude::*;
 use glam::{DVec3, Vec3};
 use std::collections::{BTreeMap, HashSet};
@@ -54,6 +55,30 @@ impl LoadedVolume {
             // Constant data has no range; any domain that holds the value does.
             Auto::Auto => (automatic.0, automatic.0 + automatic.0.abs().max(1.0)),
         }
+    }
+}
+
+/// What a component said when its files were read last. One that is written again, but is the same, is not read again.
+#[derive(Component)]
+struct ReadFor<Component: Send + Sync + 'static>(Component);
+
+/// Has the next update read all meshes and volumes again.
+pub(crate) fn read_again(world: &mut World) {
+    read_again_for::<Mesh>(world);
+    read_again_for::<Volume>(world);
+}
+
+fn read_again_for<Source: Component<Mutability = Mutable>>(world: &mut World) {
+    let mut sources = world.query::<(Entity, &mut Source)>();
+    let all: Vec<Entity> = sources
+        .iter_mut(world)
+        .map(|(entity, mut source)| {
+            source.set_changed();
+            entity
+        })
+        .collect();
+    for entity in all {
+        world.entity_mut(entity).remove::<ReadFor<Source>>();
     }
 }
 
@@ -115,18 +140,20 @@ impl FilesRead {
     }
 }
 
+type WrittenMesh<'a> = (Entity, &'a Mesh, Option<&'a ReadFor<Mesh>>, Option<&'a LoadedMesh>, Has<Subsurface>);
+
 fn load_meshes(
     mut commands: Commands,
-    meshes: Query<(Entity, Ref<Mesh>, Option<&LoadedMesh>), Or<(Changed<Mesh>, Added<Subsurface>)>>,
+    meshes: Query<WrittenMesh, Or<(Changed<Mesh>, Added<Subsurface>)>>,
     all: Query<(Entity, &Mesh, &FilesRead)>,
     mut changed: MessageReader<FileChanged>,
 ) {
     // What becomes translucent is read again if it was let go of: it is to be refined.
-    let is_due = |mesh: &Ref<Mesh>, loaded: Option<&LoadedMesh>| {
-        mesh.is_changed() || loaded.is_some_and(|loaded| loaded.data.is_none())
-    };
-    let due = meshes.iter().filter(|(_, mesh, loaded)| is_due(mesh, *loaded));
-    let mut due: BTreeMap<Entity, &Mesh> = due.map(|(entity, mesh, _)| (entity, mesh.into_inner())).collect();
+    let is_gone = |loaded: Option<&LoadedMesh>| loaded.is_some_and(|loaded| loaded.data.is_none());
+    let due = meshes.iter().filter(|(_, mesh, read, loaded, scatters)| {
+        read.is_none_or(|read| read.0 != **mesh) || *scatters && is_gone(*loaded)
+    });
+    let mut due: BTreeMap<Entity, &Mesh> = due.map(|(entity, mesh, ..)| (entity, mesh)).collect();
     let files: HashSet<&Path> = changed.read().map(|file| file.0.as_path()).collect();
     if !files.is_empty() {
         let stale = all.iter().filter(|(.., read)| read.has_any("Mesh", &files));
@@ -145,6 +172,7 @@ fn load_meshes(
             // What was loaded last stays. `Mesh.0` is the path of a file.
             Err(problem) => vec![problem.on(entity, "Mesh.0")],
         };
+        commands.entity(entity).insert(ReadFor(mesh.clone()));
         FilesRead::set(&mut commands, entity, "Mesh", files);
         EntityProblems::set(&mut commands, entity, "load_meshes", problems);
     }
@@ -181,11 +209,12 @@ fn read_mesh(mesh: &Mesh) -> Result<MeshData, Box<Problem>> {
 
 fn load_volumes(
     mut commands: Commands,
-    volumes: Query<(Entity, &Volume), Changed<Volume>>,
+    volumes: Query<(Entity, &Volume, Option<&ReadFor<Volume>>), Changed<Volume>>,
     all: Query<(Entity, &Volume, &FilesRead)>,
     mut changed: MessageReader<FileChanged>,
 ) {
-    let mut due: BTreeMap<Entity, &Volume> = volumes.iter().collect();
+    let due = volumes.iter().filter(|(_, volume, read)| read.is_none_or(|read| read.0 != **volume));
+    let mut due: BTreeMap<Entity, &Volume> = due.map(|(entity, volume, _)| (entity, volume)).collect();
     let files: HashSet<&Path> = changed.read().map(|file| file.0.as_path()).collect();
     if !files.is_empty() {
         let stale = all.iter().filter(|(.., read)| read.has_any("Volume", &files));
@@ -204,6 +233,7 @@ fn load_volumes(
                 vec![Problem::error(error.to_string()).on(entity, field_at_fault(volume, &error))]
             }
         };
+        commands.entity(entity).insert(ReadFor(volume.clone()));
         FilesRead::set(&mut commands, entity, "Volume", files);
         EntityProblems::set(&mut commands, entity, "load_volumes", problems);
     }
@@ -239,12 +269,12 @@ fn unload(
     mut volumes: RemovedComponents<Volume>,
 ) {
     for entity in meshes.read() {
-        commands.entity(entity).try_remove::<LoadedMesh>();
+        commands.entity(entity).try_remove::<(LoadedMesh, ReadFor<Mesh>)>();
         FilesRead::set(&mut commands, entity, "Mesh", Trail::new());
         EntityProblems::set(&mut commands, entity, "load_meshes", Vec::new());
     }
     for entity in volumes.read() {
-        commands.entity(entity).try_remove::<LoadedVolume>();
+        commands.entity(entity).try_remove::<(LoadedVolume, ReadFor<Volume>)>();
         FilesRead::set(&mut commands, entity, "Volume", Trail::new());
         EntityProblems::set(&mut commands, entity, "load_volumes", Vec::new());
     }

@@ -7,6 +7,7 @@ mod translucent;
 
 use support::{Studio, difference};
 use translucent::{Pixels, grey, mean, sun};
+use tyndall::Refinement;
 
 /// What came of the passes of translucent meshes so far, in the order of [`PASSES`].
 const PASSES: [&str; 4] = ["surface_points", "light_gbuffer", "scattered_radiosity", "combine"];
@@ -228,4 +229,24 @@ fn coarse_light_is_for_the_moment() {
     // Near enough for the moment: noisier, and as bright.
     let brightness = mean(&moved)[0] / mean(&settled)[0];
     assert!((brightness - 1.0).abs() < 0.05, "{brightness}");
+}
+
+#[test]
+#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
+fn one_that_no_longer_averages_shows_its_first_samples_again() {
+    let mut studio = Studio::new();
+    let scene = |progressive: bool| {
+        format!(
+            "(entities: {{ {} \"ball\": ( Mesh: Sphere(subdivisions: 2), Subsurface: (), ScatteringMaps: (samples: 4, progressive: {progressive}) ) }})",
+            sun(20.0)
+        )
+    };
+    let first = studio.radiance(&scene(false), 16, 16);
+    let before = runs(&studio);
+    assert_eq!(difference(&first, &studio.radiance(&scene(true), 16, 16)), 0.0);
+    assert_eq!(runs(&studio), before);
+    studio.app.world_mut().insert_resource(Refinement { sets: 3, per_update: 4 });
+    assert!(difference(&first, &studio.radiance(&scene(true), 16, 16)) > 0.0);
+    assert_eq!(added(before, runs(&studio)), [0, 0, 2, 1]);
+    assert_eq!(difference(&first, &studio.radiance(&scene(false), 16, 16)), 0.0);
 }

@@ -97,12 +97,12 @@ pub struct Placement(pub DAffine3);
 
 /// Derives [`Placement`], and wakes nothing where the result is the same.
 pub(crate) fn place(
-    mut entities: Query<
-        (Option<&Transform>, Option<&Motion>, &mut Placement),
-        Or<(Changed<Transform>, Changed<Motion>)>,
-    >,
+    mut entities: Query<(Option<&Transform>, Option<&Motion>, &mut Placement)>,
+    changed: Query<Entity, (With<Placement>, Or<(Changed<Transform>, Changed<Motion>)>)>,
+    (mut no_transform, mut no_motion): (RemovedComponents<Transform>, RemovedComponents<Motion>),
 ) {
-    for (transform, motion, mut placement) in &mut entities {
+    for entity in changed.iter().chain(no_transform.read()).chain(no_motion.read()) {
+        let Ok((transform, motion, mut placement)) = entities.get_mut(entity) else { continue };
         let still = transform.map_or(DAffine3::IDENTITY, Transform::scene_from_entity);
         placement.set_if_neq(Placement(motion.map_or(DAffine3::IDENTITY, |motion| motion.0) * still));
     }

@@ -37,6 +37,11 @@ impl Body {
             millimetres: radius * f64::from(millimetres_per_unit),
         }
     }
+
+    /// Where it is, whatever the unit of the scene is: what geometry depends on.
+    pub fn without_unit(&self) -> Self {
+        Self { millimetres: 1.0, ..*self }
+    }
 }
 
 type Scatters<'a> = (Entity, &'a LoadedMesh, &'a Placement, Option<&'a Shading>, Option<&'a Body>);

@@ -28,6 +28,8 @@ pub(crate) struct Classified {
     pub cumulative: Cumulative,
     /// Which of all there have been.
     pub versions: Versions,
+    /// What it was made from.
+    function: TransferFunction,
 }
 
 /// What a classification is compared by: each counts up whenever its part differs from what it was.
@@ -62,12 +64,11 @@ impl Classified {
     }
 }
 
-type Changes = Or<(Changed<TransferFunction>, Changed<LoadedVolume>)>;
+type Classifiable<'a> = (Entity, &'a TransferFunction, Ref<'a, LoadedVolume>, Option<&'a Classified>);
 
 pub(crate) fn classify(
     mut commands: Commands,
-    volumes: Query<(Entity, &TransferFunction, &LoadedVolume, Option<&Classified>), With<Volume>>,
-    changed: Query<(), Changes>,
+    volumes: Query<Classifiable, With<Volume>>,
     settings: Res<SceneSettings>,
     (mut unit, mut version): (Local<f32>, Local<u64>),
     mut report: ResMut<Report>,
@@ -75,7 +76,8 @@ pub(crate) fn classify(
     let has_other_unit =
         std::mem::replace(&mut *unit, settings.millimetres_per_unit) != settings.millimetres_per_unit;
     for (entity, function, volume, former) in &volumes {
-        if !changed.contains(entity) && !has_other_unit {
+        let is_same = former.is_some_and(|former| former.function == *function);
+        if is_same && !volume.is_changed() && !has_other_unit {
             continue;
         }
         *version += 1;
@@ -100,6 +102,7 @@ pub(crate) fn classify(
             distances,
             classification: function.classification,
             versions: Versions::default(),
+            function: function.clone(),
         };
         commands.entity(entity).insert(classified.versioned(former, *version));
     }

@@ -10,11 +10,14 @@ use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, binding
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::Resource;
 use glam::{DAffine3, DMat4, DVec3, Mat4};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct Dimmer {
-    draw: Option<(VeilCount, Draw)>,
+    /// By what they are made for: one mesh may have more volumes in its light than another.
+    draws: HashMap<VeilCount, Draw>,
 }
 
 mirror! {
@@ -44,11 +47,10 @@ pub(crate) fn dim(
     if count.lights == 0 {
         return Ok(target);
     }
-    let draw = match dimmer.draw.take() {
-        Some((made_for, draw)) if made_for == count => draw,
-        _ => make(gpu, count, report)?,
+    let draw = match dimmer.draws.entry(count) {
+        Entry::Occupied(made) => made.into_mut(),
+        Entry::Vacant(place) => place.insert(make(gpu, count, report)?),
     };
-    let (_, draw) = dimmer.draw.insert((count, draw));
     let dimmed = Target::new(gpu, "dimmed_gbuffer", view.size, FORMAT)?;
     let texel = view.texels_per_length().recip();
     let low = DVec3::new(view.low.x, view.low.y + texel * f64::from(view.size.y), 0.0);

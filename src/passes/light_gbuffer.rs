@@ -113,13 +113,16 @@ pub(crate) fn run(
         let kept = views.as_mut().map_or(&mut own, |views| views.bypass_change_detection());
         let mut old = std::mem::take(&mut kept.0);
         for (light, to_light) in &lights {
-            let seen = seen_box(OrthographicView::rotation(*to_light), body, placement, mesh.bounds);
+            let light_from_body = OrthographicView::rotation(*to_light);
+            let seen = seen_box(light_from_body, body, placement, mesh.bounds);
             let blockers = blockers(body, *to_light, seen, entity, &meshes);
-            let veils = Veils::gather(&shading, &settings, Some(*light));
+            let veils = Veils::between(&shading, &settings, *light, |placement, bounds| {
+                is_between(seen_box(light_from_body, body, placement, bounds), seen)
+            });
             let mut recipe = Recipe {
                 to_light: *to_light,
                 texels: in_full,
-                body: *body,
+                body: body.without_unit(),
                 mesh: buffers.clone(),
                 blockers,
                 veils: veils.recipe(),
@@ -161,23 +164,28 @@ pub(crate) fn run(
 pub(crate) fn blockers(
     body: &Body,
     to_light: DVec3,
-    (low, high): (DVec3, DVec3),
+    seen: (DVec3, DVec3),
     own: Entity,
     meshes: &Meshes,
 ) -> Vec<Blocker> {
     let light_from_body = OrthographicView::rotation(to_light);
     let mut found: Vec<(Entity, Blocker)> = Vec::new();
     for (entity, buffers, placement, mesh) in meshes.iter().filter(|(entity, ..)| *entity != own) {
-        let (its_low, its_high) = seen_box(light_from_body, body, placement, mesh.bounds);
-        let is_beside = its_low.truncate().cmpgt(high.truncate()).any()
-            || its_high.truncate().cmplt(low.truncate()).any();
-        if !is_beside && its_high.z > low.z {
-            let blocker = Blocker { mesh: buffers.clone(), placement: *placement, top: its_high.z };
+        let its = seen_box(light_from_body, body, placement, mesh.bounds);
+        if is_between(its, seen) {
+            let blocker = Blocker { mesh: buffers.clone(), placement: *placement, top: its.1.z };
             found.push((entity, blocker));
         }
     }
     found.sort_by_key(|(entity, _)| *entity);
     found.into_iter().map(|(_, blocker)| blocker).collect()
+}
+
+/// Whether one box may stand between the light, which is where z is greatest, and another.
+fn is_between((its_low, its_high): (DVec3, DVec3), (low, high): (DVec3, DVec3)) -> bool {
+    let is_beside =
+        its_low.truncate().cmpgt(high.truncate()).any() || its_high.truncate().cmplt(low.truncate()).any();
+    !is_beside && its_high.z > low.z
 }
 
 fn draw(

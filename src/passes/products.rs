@@ -21,9 +21,8 @@ use super::surface_points::SurfacePoints;
 use super::tonemap::Tonemap;
 use super::upload::{MeshBuffers, VolumeTexture};
 use super::volume_shadow::VolumeShadows;
-use crate::components::{Mesh, Volume};
 use crate::gpu::PassTimer;
-use bevy_ecs::component::Mutable;
+use crate::loading::read_again;
 use bevy_ecs::prelude::*;
 use std::collections::BTreeSet;
 
@@ -75,8 +74,7 @@ pub(crate) fn forget_device(world: &mut World) {
     reset::<Surface>(world);
     reset::<RayCaster>(world);
     reset::<Tonemap>(world);
-    read_again::<Mesh>(world);
-    read_again::<Volume>(world);
+    read_again(world);
 }
 
 fn remove_all<Products: Bundle>(world: &mut World) {
@@ -89,11 +87,5 @@ fn remove_all<Products: Bundle>(world: &mut World) {
 fn reset<Kept: Resource + Default>(world: &mut World) {
     if world.contains_resource::<Kept>() {
         world.insert_resource(Kept::default());
-    }
-}
-
-fn read_again<Source: Component<Mutability = Mutable>>(world: &mut World) {
-    for mut source in world.query::<&mut Source>().iter_mut(world) {
-        source.set_changed();
     }
 }

@@ -10,7 +10,7 @@ mod kernels;
 use super::body::Body;
 use super::gbuffer::Gbuffer;
 use super::light_budget::LightBudget;
-use super::light_gbuffer::LightViews;
+use super::light_gbuffer::{LightView, LightViews};
 use super::medium::{Dipole, LEAST_DISTANCE, MediumUniform};
 use super::scattering_gbuffer::{self, CameraMaps, TexelChooser};
 use super::surface_points::SurfacePoints;
@@ -23,7 +23,7 @@ use crate::report::Report;
 use crate::view::Coarseness;
 use bevy_ecs::prelude::*;
 use glam::Vec3;
-use job::{Destination, Job};
+use job::{Destination, Job, Sampling};
 pub(crate) use job::{EstimatorUniform, GatheringUniform};
 pub(crate) use kernels::{Scatterer, listing_module, sampling_module};
 
@@ -32,8 +32,10 @@ pub(crate) use kernels::{Scatterer, listing_module, sampling_module};
 pub(crate) struct ScatteredRadiosity {
     /// One vec4f a point, one layer of them after the other.
     pub layers: wgpu::Buffer,
+    /// Bytes of a layer.
+    layer: u64,
     /// What each layer was made from, and of how many sets of samples it is the mean.
-    made: Vec<(Recipe, u32)>,
+    made: Vec<Option<(Recipe, u32)>>,
     /// The model, and what it was made from.
     dipole: (Material, DipoleModel, Dipole),
     /// Whether all lights share one layer, in which their irradiance is already.
@@ -47,7 +49,7 @@ pub(crate) struct ScatteredRadiosity {
 struct Recipe {
     view: u64,
     points: MeshBuffers,
-    maps: ScatteringMaps,
+    sampling: Sampling,
     cameras: Option<scattering_gbuffer::Recipe>,
     medium: MediumUniform,
     /// Of the light, where all lights share a layer.
@@ -110,20 +112,31 @@ pub(crate) fn run(
         held += size;
         let mut new = None;
         let kept = match radiosity.as_deref_mut() {
-            Some(kept) if kept.layers.size() == size && kept.is_shared == is_shared => kept,
-            _ => match ScatteredRadiosity::new(&gpu, size, is_shared, subsurface) {
+            Some(kept) if kept.layer == layer && kept.is_shared == is_shared => kept,
+            _ => match ScatteredRadiosity::new(&gpu, layer, size, is_shared, subsurface) {
                 Some(radiosity) => new.insert(radiosity),
                 None => continue,
             },
         };
+        if !is_shared {
+            kept.arrange(&gpu, size, views);
+        }
         kept.keep_dipole(subsurface);
         let medium = kept.dipole.2.uniform(LEAST_DISTANCE, body.millimetres);
-        let coarse = coarser(maps, coarseness.light);
-        let job =
-            Job { gpu: &gpu, body, maps: &coarse, points, mesh, medium: &medium, model: subsurface.model };
+        let in_full = Sampling::of(maps, body);
+        let job = Job {
+            gpu: &gpu,
+            body,
+            sampling: Sampling::of(&coarser(maps, coarseness.light), body),
+            is_progressive: maps.progressive,
+            points,
+            mesh,
+            medium: &medium,
+            model: subsurface.model,
+        };
         let asked = (*refinement, &irradiance as &dyn Fn(Entity) -> Vec3);
         let timer = timer.as_deref_mut();
-        let refined = || kept.refine(&job, maps, views, cameras, asked, &mut tools, timer, &mut report);
+        let refined = || kept.refine(&job, in_full, views, cameras, asked, &mut tools, timer, &mut report);
         if let Err(error) = gpu.attempt("scattered_radiosity", refined) {
             failure.on(entity, "scattered_radiosity", "Subsurface", error);
         }
@@ -139,7 +152,8 @@ pub(crate) fn run(
 pub(crate) fn refined(world: &mut World, wanted: u32) -> Option<(u32, u32)> {
     let mut bodies = world.query_filtered::<(&ScatteringMaps, Option<&ScatteredRadiosity>), With<Body>>();
     let progressive = bodies.iter(world).filter(|(maps, _)| maps.progressive);
-    let sets = |radiosity: &ScatteredRadiosity| radiosity.made.iter().map(|(_, sets)| *sets).min();
+    let sets_of = |made: &Option<(Recipe, u32)>| made.as_ref().map_or(0, |(_, sets)| *sets);
+    let sets = |radiosity: &ScatteredRadiosity| radiosity.made.iter().map(sets_of).min();
     let fewest = progressive.filter_map(|(_, radiosity)| radiosity.map_or(Some(0), sets)).min()?;
     Some((fewest.min(wanted), wanted))
 }
@@ -151,15 +165,43 @@ fn coarser(maps: &ScatteringMaps, light: f32) -> ScatteringMaps {
 }
 
 impl ScatteredRadiosity {
-    fn new(gpu: &Gpu, size: u64, is_shared: bool, subsurface: &Subsurface) -> Option<Self> {
+    fn new(gpu: &Gpu, layer: u64, size: u64, is_shared: bool, subsurface: &Subsurface) -> Option<Self> {
         let dipole = (subsurface.material.clone(), subsurface.model, Dipole::new(subsurface)?);
         Some(Self {
             layers: storage(gpu, "scattered_radiosity", size),
+            layer,
             made: Vec::new(),
             dipole,
             is_shared,
             version: 0,
         })
+    }
+
+    /// Brings the layers into the order of the lights where some have come or gone. What the others send out stays.
+    fn arrange(&mut self, gpu: &Gpu, size: u64, views: &LightViews) {
+        let is_of = |made: &Option<(Recipe, u32)>, view: &LightView| {
+            made.as_ref().is_some_and(|(recipe, _)| recipe.view == view.version)
+        };
+        let formers: Vec<Option<usize>> =
+            views.0.iter().map(|view| self.made.iter().position(|made| is_of(made, view))).collect();
+        let mut places = formers.iter().enumerate();
+        if self.layers.size() == size
+            && places.all(|(layer, former)| former.is_none_or(|former| former == layer))
+        {
+            self.made.resize(views.0.len(), None);
+            return;
+        }
+        let layers = storage(gpu, "scattered_radiosity", size);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        for (layer, former) in formers.iter().enumerate() {
+            if let Some(former) = former {
+                let [from, to] = [*former, layer].map(|layer| self.layer * layer as u64);
+                encoder.copy_buffer_to_buffer(&self.layers, from, &layers, to, self.layer);
+            }
+        }
+        gpu.queue.submit([encoder.finish()]);
+        self.made = formers.into_iter().map(|former| self.made[former?].take()).collect();
+        self.layers = layers;
     }
 
     /// Derives the model anew if what it is made from has changed.
@@ -177,7 +219,7 @@ impl ScatteredRadiosity {
     fn refine(
         &mut self,
         job: &Job,
-        in_full: &ScatteringMaps,
+        in_full: Sampling,
         views: &LightViews,
         cameras: Option<&CameraMaps>,
         (refinement, irradiance): (Refinement, &dyn Fn(Entity) -> Vec3),
@@ -189,27 +231,28 @@ impl ScatteredRadiosity {
             // What a light that is gone sent out cannot be taken back.
             self.made.clear();
         }
-        self.made.truncate(views.0.len());
-        let wanted = if job.maps.progressive { refinement.sets.max(1) } else { 1 };
+        self.made.resize(views.0.len(), None);
+        let wanted = if job.is_progressive { refinement.sets.max(1) } else { 1 };
         let self_shared = self.is_shared;
-        let recipe = |layer: usize, maps: &ScatteringMaps| Recipe {
+        let recipe = |layer: usize, sampling: Sampling| Recipe {
             view: views.0[layer].version,
             points: job.points.mesh.clone(),
-            maps: maps.clone(),
+            sampling,
             cameras: cameras.map(|maps| maps.recipe.clone()),
             medium: job.medium.clone(),
             irradiance: self_shared.then(|| irradiance(views.0[layer].light)),
         };
+        // One that no longer averages shows its first set again.
+        let is_current = |made: &(Recipe, u32), layer| {
+            [in_full, job.sampling].iter().any(|sampling| made.0 == recipe(layer, *sampling))
+                && (job.is_progressive || made.1 == 1)
+        };
         for _ in 0..refinement.per_update.max(1) {
             // Layers start again with what they are made from, so they can be at different sets; lights that share one start together.
-            let mut sets: Vec<u32> = (0..views.0.len())
-                .map(|layer| {
-                    let is_good = |made: &&(Recipe, u32)| {
-                        [in_full, job.maps].iter().any(|maps| made.0 == recipe(layer, maps))
-                    };
-                    self.made.get(layer).filter(is_good).map_or(0, |made| made.1)
-                })
-                .collect();
+            let sets_of = |(layer, made): (usize, &Option<(Recipe, u32)>)| {
+                made.as_ref().filter(|made| is_current(made, layer)).map_or(0, |made| made.1)
+            };
+            let mut sets: Vec<u32> = self.made.iter().enumerate().map(sets_of).collect();
             if self.is_shared && sets.contains(&0) {
                 sets.fill(0);
             }
@@ -241,11 +284,7 @@ impl ScatteredRadiosity {
                     },
                 };
                 job.run(&mut tools.0, view, maps, to, &self.layers, timer.as_deref_mut(), report)?;
-                let made = (recipe(layer, job.maps), set + 1);
-                match self.made.get_mut(layer) {
-                    Some(place) => *place = made,
-                    None => self.made.push(made),
-                }
+                self.made[layer] = Some((recipe(layer, job.sampling), set + 1));
                 self.version = tools.0.next_version();
             }
         }

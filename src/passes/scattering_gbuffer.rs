@@ -105,7 +105,7 @@ pub(crate) fn run(
             continue;
         }
         let recipe = Recipe {
-            body: *body,
+            body: body.without_unit(),
             mesh: buffers.clone(),
             points: points.mesh.clone(),
             count: points.count,

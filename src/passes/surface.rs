@@ -124,7 +124,7 @@ fn run(
         return;
     }
     let timing = timer.as_mut().and_then(|timer| timer.time("surface"));
-    let veils = Veils::gather(&shading, &settings, None);
+    let veils = Veils::all(&shading, &settings);
     let parts = in_parts(&comparison, picture.size);
     let drawn = draw(
         &gpu,

@@ -11,7 +11,7 @@ use crate::report::Report;
 use crate::scene::{Problem, Problems};
 use crate::view::{Picture, View};
 use bevy_ecs::prelude::*;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// The refined mesh on the GPU. Between its vertices the light that leaves is interpolated.
 #[derive(Component, Debug)]
@@ -23,6 +23,8 @@ pub(crate) struct SurfacePoints {
     spacing: f64,
     /// What it was made from.
     source: MeshBuffers,
+    /// How long the mesh's axes were in body space, and the angles between them.
+    shape: DMat3,
 }
 
 /// The most points of one mesh.
@@ -43,6 +45,9 @@ const SHARES: (f64, f64) = (1.0 / 1024.0, 1.0 / 16.0);
 /// Points are made anew when they are to be finer by this factor, so that a small step of the camera changes nothing.
 const HYSTERESIS: f64 = 1.5;
 
+/// Shapes closer than this are the same: turning a mesh moves the last digits of its lengths.
+const SAME: f64 = 1e-6;
+
 type Refinable<'a> =
     (Entity, Ref<'a, LoadedMesh>, &'a MeshBuffers, &'a Body, &'a Subsurface, Option<&'a SurfacePoints>);
 
@@ -60,9 +65,14 @@ pub(crate) fn refine(
             continue;
         }
         let spacing = spacing(&view, &picture, body, subsurface);
-        let current =
-            points.filter(|points| points.source == *buffers && spacing * HYSTERESIS >= points.spacing);
-        if let Some(points) = current {
+        let axes = body.body_from_mesh.matrix3;
+        let shape = axes.transpose() * axes;
+        let is_current = |points: &&SurfacePoints| {
+            points.source == *buffers
+                && spacing * HYSTERESIS >= points.spacing
+                && points.shape.abs_diff_eq(shape, SAME * shape.determinant().cbrt())
+        };
+        if let Some(points) = points.filter(is_current) {
             held += points.bytes();
             continue;
         }
@@ -76,7 +86,7 @@ pub(crate) fn refine(
         }
         let most =
             if gpu.is_software() { most_points_in_software(data.positions.len()) } else { MOST_POINTS };
-        let (refined, _) = data.refined(body.body_from_mesh.matrix3, spacing, most);
+        let (refined, _) = data.refined(axes, spacing, most);
         let is_same = refined.positions.len() == data.positions.len();
         let mesh = if is_same { Ok(buffers.clone()) } else { MeshBuffers::new(&gpu, &refined) };
         let mesh = match mesh {
@@ -86,8 +96,8 @@ pub(crate) fn refine(
                 continue;
             }
         };
-        let points =
-            SurfacePoints { mesh, count: refined.positions.len() as u32, spacing, source: buffers.clone() };
+        let count = refined.positions.len() as u32;
+        let points = SurfacePoints { mesh, count, spacing, source: buffers.clone(), shape };
         held += points.bytes();
         report.ran("surface_points", &[("points", u64::from(points.count))]);
         commands.entity(entity).insert(points);

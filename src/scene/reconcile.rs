@@ -147,17 +147,17 @@ impl Writer<'_> {
         self.remove_left_over(entity, came_along.into_iter().filter(|type_id| !now.contains(type_id)));
     }
 
-    /// Takes away what was there only because something that is gone required it, of what scenes can write: a world that reads the scene
-    /// anew has none of it either.
+    /// Takes away what was there only because something that is gone required it: a world that reads the scene anew has none of it
+    /// either.
     fn remove_left_over(&mut self, entity: Entity, came_along: impl Iterator<Item = TypeId>) {
         for type_id in came_along {
             let entity_ref = self.world.entity(entity);
             let held = entity_ref.archetype().iter_components().filter_map(|id| self.type_of(id)).collect();
-            if let Some(component) = self.registry.get_type_data::<ReflectComponent>(type_id)
-                && component.contains(entity_ref)
+            if let Some(id) = self.world.components().get_id(type_id)
+                && entity_ref.contains_id(id)
                 && !self.is_required(type_id, &held)
             {
-                component.remove(&mut self.world.entity_mut(entity));
+                self.world.entity_mut(entity).remove_by_id(id);
                 self.changes.removed += 1;
             }
         }

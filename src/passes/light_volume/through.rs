@@ -6,7 +6,7 @@ use crate::components::{Placement, SceneSettings};
 use crate::gpu::{Filtering, Gpu, binding, uniform_array};
 use crate::loading::LoadedVolume;
 use bevy_ecs::prelude::*;
-use glam::{DAffine3, DMat4, Mat4};
+use glam::{DAffine3, DMat4, Mat4, Vec3};
 
 /// The volumes that light may come through.
 pub(crate) type Shading<'w, 's> =
@@ -22,25 +22,48 @@ pub(crate) struct Veils<'a> {
 }
 
 /// What shaders are made for: volumes, and lights.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct VeilCount {
     pub volumes: usize,
     pub lights: usize,
 }
 
 impl<'a> Veils<'a> {
-    /// All volumes and lights, or those of one light; none if volumes are not to shade meshes.
-    pub fn gather(shading: &'a Shading, settings: &SceneSettings, light: Option<Entity>) -> Self {
+    /// All volumes and lights; none if volumes are not to shade meshes.
+    pub fn all(shading: &'a Shading, settings: &SceneSettings) -> Self {
+        Self::gather(shading, settings, |_| true, |_, _| true)
+    }
+
+    /// Those of one light, as far as `is_between` says so of where they are and the box around them.
+    pub fn between(
+        shading: &'a Shading,
+        settings: &SceneSettings,
+        light: Entity,
+        is_between: impl Fn(&Placement, (Vec3, Vec3)) -> bool,
+    ) -> Self {
+        Self::gather(shading, settings, |volume| volume.light == light, is_between)
+    }
+
+    fn gather(
+        shading: &'a Shading,
+        settings: &SceneSettings,
+        is_wanted: impl Fn(&LightVolume) -> bool,
+        is_between: impl Fn(&Placement, (Vec3, Vec3)) -> bool,
+    ) -> Self {
         let mut veils = Self::default();
         if !settings.volumes_shade_meshes {
             return veils;
         }
-        let mut volumes: Vec<_> = shading.iter().filter(|(.., own)| !own.0.is_empty()).collect();
+        let is_shading = |loaded: &LoadedVolume, placement, own: &LightVolumes| {
+            let half = loaded.half_extent() / settings.millimetres_per_unit;
+            !own.0.is_empty() && is_between(placement, (-half, half))
+        };
+        let volumes = shading.iter().filter(|(_, loaded, placement, own)| is_shading(loaded, placement, own));
+        let mut volumes: Vec<_> = volumes.collect();
         volumes.sort_by_key(|(entity, ..)| *entity);
         for (_, loaded, placement, own) in volumes {
             veils.texture_from_scene.push(scene_from_texture(loaded, placement, settings).inverse());
-            let wanted = own.0.iter().filter(|volume| light.is_none_or(|light| volume.light == light));
-            veils.light_volumes.extend(wanted);
+            veils.light_volumes.extend(own.0.iter().filter(|volume| is_wanted(volume)));
         }
         veils
     }

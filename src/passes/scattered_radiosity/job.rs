@@ -60,11 +60,41 @@ pub(super) struct Destination {
     pub gain: Vec3,
 }
 
+/// How samples are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sampling {
+    strategy: MapStrategy,
+    samples: u32,
+    /// Of which the nearest are taken.
+    candidates: u32,
+    /// How far away they are at most, in body space.
+    radius: f32,
+}
+
+impl Sampling {
+    /// What a mesh's settings come to.
+    pub fn of(maps: &ScatteringMaps, body: &Body) -> Self {
+        let samples = maps.samples.min(MOST_CANDIDATES);
+        let candidates = match (maps.strategy, maps.candidates) {
+            (MapStrategy::Uniform, Auto::Value(candidates)) => candidates.clamp(samples, MOST_CANDIDATES),
+            _ => samples,
+        };
+        let radius = match maps.radius {
+            SampleRadius::Auto => f32::INFINITY,
+            SampleRadius::Millimetres(radius) => radius / body.millimetres as f32,
+        };
+        // No two points of a body are further apart.
+        Self { strategy: maps.strategy, samples, candidates, radius: radius.min(2.0) }
+    }
+}
+
 /// One mesh's part of the pass.
 pub(super) struct Job<'a> {
     pub gpu: &'a Gpu,
     pub body: &'a Body,
-    pub maps: &'a ScatteringMaps,
+    pub sampling: Sampling,
+    /// Whether further sets of samples are averaged in.
+    pub is_progressive: bool,
     pub points: &'a SurfacePoints,
     pub mesh: &'a LoadedMesh,
     pub medium: &'a MediumUniform,
@@ -229,11 +259,7 @@ impl Job<'_> {
         let view = &view.view;
         let light_from_mesh = view.view_from_body * self.body.body_from_mesh;
         let largest = self.of_scattering(self.medium.sigma_t_prime).fold(1e-30, f32::max);
-        let samples = self.maps.samples.min(MOST_CANDIDATES);
-        let radius = match self.maps.radius {
-            SampleRadius::Auto => f32::INFINITY,
-            SampleRadius::Millimetres(radius) => radius / self.body.millimetres as f32,
-        };
+        let Sampling { samples, candidates, radius, .. } = self.sampling;
         EstimatorUniform {
             light_from_mesh: DMat4::from(light_from_mesh).as_mat4(),
             light_from_mesh_normal: normal_matrix(light_from_mesh).as_mat4(),
@@ -241,16 +267,12 @@ impl Job<'_> {
             inverse_texel: Vec2::splat(view.texels_per_length() as f32),
             samples,
             pass_index: to.set,
-            candidates: match self.maps.candidates {
-                Auto::Value(candidates) => candidates.clamp(samples, MOST_CANDIDATES),
-                Auto::Auto => samples,
-            },
+            candidates,
             points: self.points.count,
             first: to.layer as u32 * self.points.count,
             core: (CORE / largest).clamp(1e-9, 1.0),
             least_mu: self.least_mu(),
-            // No two points of a body are further apart.
-            radius: radius.min(2.0),
+            radius,
             keep: to.keep,
             gain: to.gain,
         }
@@ -269,7 +291,7 @@ impl Job<'_> {
 
     /// The points of the published disc, with the area that each stands for; none for the adaptive strategy.
     fn disc(&self, estimator: &EstimatorUniform, set: u32) -> Vec<Vec4> {
-        if self.maps.strategy == MapStrategy::Adaptive {
+        if self.sampling.strategy == MapStrategy::Adaptive {
             return Vec::new();
         }
         let sigma = f64::from(estimator.least_mu);
