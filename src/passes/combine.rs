@@ -95,7 +95,6 @@ pub(crate) fn run(
     report.hold("combine", held);
 }
 
-#[expect(clippy::too_many_arguments, reason = "what one dispatch reads and writes")]
 fn draw(
     gpu: &Gpu,
     combiner: &mut Combiner,
