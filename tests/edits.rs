@@ -352,6 +352,22 @@ fn a_drag_is_one_step() {
 }
 
 #[test]
+fn a_drag_of_what_no_file_says_is_one_step_too() {
+    let mut desk = Desk::with(&[("scene.ron", "(entities: { \"ball\": ( Mesh: Sphere() ) })")]);
+    let first = desk.world();
+    desk.edits.begin_drag();
+    desk.edits.add_component(desk.app.world_mut(), "ball", &Transform::default()).unwrap();
+    for tenths in 1..=20 {
+        desk.set("ball", "Transform.scale", Scale::Uniform(tenths as f32 / 10.0));
+    }
+    desk.edits.end_drag();
+    assert_eq!(desk.get::<Transform>("ball").scale, Scale::Uniform(2.0));
+    assert!(desk.undo());
+    assert_eq!(desk.world(), first);
+    assert!(!desk.undo());
+}
+
+#[test]
 fn only_what_an_edit_changes_counts_as_changed() {
     let mut desk = Desk::of("showcase.ron");
     let changed = |desk: &mut Desk| {

@@ -129,7 +129,7 @@ impl Edits {
         reconcile(world, &self.document);
     }
 
-    /// From here to [`end_drag`](Self::end_drag), edits of the same value become one step to undo.
+    /// From here to [`end_drag`](Self::end_drag), edits become one step to undo.
     pub fn begin_drag(&mut self) {
         self.history.begin_drag();
     }

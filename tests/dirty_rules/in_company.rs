@@ -223,7 +223,7 @@ pub const TABLE: Table = Table {
         ("fog.VolumeLighting", "Gradient()", ""),
         ("fog.VolumeLighting", "EmissionAbsorption", ""),
         ("fog.RayCast.step", "0.6", ""),
-        ("fog.RayCast.early_termination", "0.9", ""),
+        ("fog.RayCast.early_termination", "0.2", ""),
         ("fog.RayCast.skip_empty", "false", ""),
         ("fog.Shading", "Local", ""),
         // One that emits it, and is classified by the values at the ends of segments.

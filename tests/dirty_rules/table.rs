@@ -82,9 +82,6 @@ impl Trial<'_> {
         };
         expect("in the file", stage.save(text(edited)), reruns);
         let afresh = stage.afresh();
-        if afresh == *as_before {
-            eprintln!("UNSEEN {:?}", changed(base, edited).first().map(|(n, _)| n.clone()));
-        }
         let mut pictures = vec![("in the file", stage.shown(), &afresh)];
         if let Some(commented) = commented {
             expect("again in the file", stage.save(text(commented)), "");

@@ -23,7 +23,7 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Changes of the same values, until the end of the drag, become one step.
+    /// All changes until the end of the drag become one step, in which those of the same values are one change.
     pub fn begin_drag(&mut self) {
         self.end_drag();
         self.is_dragging = true;
@@ -41,9 +41,17 @@ impl History {
     /// Keeps what was done. What was undone before cannot be done again.
     pub fn push(&mut self, changes: Vec<Change>, registry: &TypeRegistry) {
         self.undone.clear();
-        let last = self.done.pop_back_if(|last| last.is_open && continues(&last.changes, &changes));
-        let changes = match last {
-            Some(last) => joined(last.changes, changes, registry),
+        let changes = match self.done.pop_back_if(|last| last.is_open) {
+            Some(mut last) => {
+                // A component that is written down by the first change of it comes before the changes themselves.
+                let tail = last.changes.split_off(last.changes.len().saturating_sub(changes.len()));
+                if continues(&tail, &changes) {
+                    last.changes.extend(joined(tail, changes, registry));
+                } else {
+                    last.changes.extend(tail.into_iter().chain(changes));
+                }
+                last.changes
+            }
             None => changes,
         };
         if changes.is_empty() {
