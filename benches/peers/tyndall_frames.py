@@ -136,11 +136,11 @@ def first_image(tyndall, scene_path, images, env, timeout):
     return run([*command(tyndall, scene_path, png)], env, png, timeout)
 
 
-def frames(tyndall, scene_path, images, count, env, timeout):
+def frames(tyndall, scene_path, images, count, env, timeout, more=()):
     """A run that draws frames 0..count into {images}_0000.png and on."""
     first, last = (Path(f"{images}_{i:04}.png") for i in (0, count - 1))
     last.unlink(missing_ok=True)
-    words = [*command(tyndall, scene_path, f"{images}.png"), "--frames", f"0..{count}", "--stats", f"{images}_stats.json"]
+    words = [*command(tyndall, scene_path, f"{images}.png"), "--frames", f"0..{count}", *more]
     result = run(words, env, first, timeout)
     if not last.exists():
         raise Failure(f"{' '.join(map(str, words))}\n  ended well but left no {last.name}")
@@ -155,8 +155,10 @@ def command(tyndall, scene_path, png):
 def cpu_per_frame(tyndall, scene_path, images, warm_up, count, env, timeout):
     """(CPU of warm_up + count frames - CPU of warm_up frames) / count: start-up, loading and shader compilation cancel.
 
-    The short run comes first and its images are overwritten, with equals, by the long one.
+    The short run comes first and its images are overwritten, with equals, by the long one. What Tyndall says of its passes comes from a run of
+    its own: to count samples it reads each picture back.
     """
+    frames(tyndall, scene_path, images, warm_up, env, timeout, ("--stats", f"{images}_stats.json"))
     short = frames(tyndall, scene_path, images, warm_up, env, timeout)
     long = frames(tyndall, scene_path, images, warm_up + count, env, timeout)
     return {
