@@ -88,9 +88,10 @@ struct March {
 const RUN = 16.0;
 
 // Samples that are lit together where light is scattered often, at most, and the optical depth that is enough for them: light varies by
-// less over them than the model is off.
+// less over them than the model is off. Twice that where half of the light from there does not reach the eye.
 const TOGETHER = 4.0;
 const DEPTH_TOGETHER = 0.3;
+const LEAST_SEEN = 0.5;
 
 fn start_march(index: u32, ray: Ray, surface_distance: f32) -> March {
     let origin = (volumes[index].texture_from_eye * vec4f(ray.origin, 1.0)).xyz;
@@ -339,6 +340,7 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                 var depth = 0.0;
                 var alpha = 0.0;
                 var together = end;
+                let seen = max(select(transmittance, thin_transmittance, ANY_PEAK), LEAST_SEEN);
                 // On to a sample that absorbs, and a few more where light is scattered often: to look it up costs most, and all lanes are
                 // to have something to look up.
                 loop {
@@ -366,11 +368,11 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                     colour = mix(colour, found.rgb, part);
                     place = mix(place, at, part);
                     texel = mix(texel, at_texel, part);
-                    together = select(together, min(end, done + TOGETHER), depth == 0.0);
+                    together = select(together, min(end, done + floor(TOGETHER / seen)), depth == 0.0);
                     depth += more;
                     done += 1.0;
                     samples += 1.0;
-                    let is_enough = alone || depth > DEPTH_TOGETHER || done >= together;
+                    let is_enough = alone || depth * seen > DEPTH_TOGETHER || done >= together;
                     if !ANY_LIT || done >= end || (depth > 0.0 && is_enough) {
                         break;
                     }
