@@ -5,7 +5,8 @@
 //
 //   dL/ds = -sigma_t (1 - albedo g) L + sigma_t albedo (sum over lights of p E T' + (1 - g) fluence / 4 pi),
 //
-// and from slice to slice the cone spreads as in `cells.wgsl`. The way is that of the middle of the volume to the eye.
+// with p and T' without the peak, which goes on with the light itself. The network has the same share 1 - g leave its way, so what is seen is
+// what was let out. From slice to slice the cone spreads as in `cells.wgsl`. The way is that of the middle of the volume to the eye.
 //
 // reads  light cells, fluence, light volumes, shadows of meshes
 // writes radiance towards the eye, as a share of `scale`
@@ -26,7 +27,7 @@ struct EyeSweep {
 @group(0) @binding(4) var fluence: texture_3d<f32>;
 @group(0) @binding(5) var<storage, read_write> towards_eye: array<vec4f>;
 @group(0) @binding(6) var<uniform> eye: EyeSweep;
-// Irradiance of each light times the phase function from it to the eye.
+// Irradiance of each light times the phase function from it to the eye, without its peak.
 @group(0) @binding(7) var<storage, read> sources: array<vec4f>;
 @group(0) @binding(8) var eye_light: texture_storage_3d<rgba16float, write>;
 

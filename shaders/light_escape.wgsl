@@ -23,8 +23,8 @@ struct Fan {
     way: f32,
     // Of all directions.
     share: f32,
-    // Mean cosine of scattering.
-    g: f32,
+    // Share of scattered light that leaves its way.
+    aside: f32,
 }
 
 @group(0) @binding(1) var<uniform> fan: Fan;
@@ -55,7 +55,7 @@ fn extent() -> vec3i {
 fn depth_at(at: vec2i, along: i32) -> f32 {
     let cell = vec3u(unrolled(vec3f(vec2f(at), f32(along))));
     let medium = textureLoad(light_cells, cell, 0);
-    return min(medium.a * level.unit * mean_beam_extinction(medium.rgb, fan.g) * fan.way, 1e9);
+    return min(medium.a * level.unit * mean_extinction(medium.rgb, fan.aside) * fan.way, 1e9);
 }
 
 // By how much the cell beside is thinner.

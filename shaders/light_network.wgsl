@@ -73,6 +73,8 @@ fn surround(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) g
 struct Diffusion {
     // Mean cosine of scattering.
     g: f32,
+    // Share of scattered light that leaves its way.
+    aside: f32,
     // Diffusivity, as a multiple of that of light.
     spread: f32,
 }
@@ -116,8 +118,7 @@ fn connect(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gr
     }
     let cell = cell_of(index, level.cells);
     let medium = textureLoad(fine, cell, 0);
-    let ahead = max(diffusion.g, 0.0);
-    let out = (1.0 - medium.rgb) + medium.rgb * ((1.0 - ahead) * (1.0 + ahead) * min(escape[index].w, 1.0));
+    let out = (1.0 - medium.rgb) + medium.rgb * (diffusion.aside * min(escape[index].w, 1.0));
     textureStore(sink_out, cell, vec4f(medium.a * level.unit * volume_of() * out, 0.0));
     let own = diffusivity(cell);
     textureStore(x_out, cell, link(own, cell, 0u));

@@ -196,7 +196,7 @@ fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, thinned: f32, plac
     let albedo = min(colour, vec3f(1.0));
     let is_often = ANY_OFTEN && volume.lighting >= 4u;
     let towards_eye = ANY_TOWARDS_EYE && volume.lighting == 5u;
-    let cap = select(3e38, volume.peak_cap, is_often && !towards_eye);
+    let cap = select(3e38, volume.peak_cap, is_often);
     var arriving = vec3f(0.0);
     var specular = vec3f(0.0);
     var normal: Normal;

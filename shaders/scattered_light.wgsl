@@ -23,6 +23,8 @@ struct Source {
     // Beside the peak: the share that goes straight on or back, and the mean cosine of the rest.
     lobe: f32,
     g_even: f32,
+    // Share of scattered light that leaves its way to the eye.
+    aside: f32,
 }
 
 @group(0) @binding(1) var<uniform> source: Source;
@@ -44,18 +46,22 @@ fn escaping(mean: f32, lost: f32, falls: f32) -> f32 {
     return clamp(mean * lessening(x + y) / (lessening(x) * lessening(y)), 0.0, 1.0);
 }
 
-// Of light that is scattered straight on or back, the share that escapes: from all places along a way through the cell as much of it comes out.
-fn escaping_straight(centre: vec3f, depth: f32, lost: f32, extinction: f32) -> f32 {
+// Of light that is scattered straight on or back, the share that escapes. `depth` is the optical depth of all light as far as the cell, `raw`
+// that of the cell, of which the beam counts the share `beam` and what escapes the share `eye`.
+fn escaping_straight(centre: vec3f, depth: f32, raw: f32, beam: f32, eye: f32) -> f32 {
+    let lost = clamp(raw * beam, 0.0, 80.0);
     if source.g < 0.0 {
-        return exp(-depth) * lessening(2.0 * lost) / lessening(lost);
+        return exp(-depth * eye) * lessening(2.0 * lost) / lessening(lost);
     }
     let pace = source.travels / (level.edges * vec3f(level.cells));
     let safe = select(pace, vec3f(1e-30), abs(pace) < vec3f(1e-30));
     let walls = max((select(vec3f(0.0), vec3f(1.0), pace > vec3f(0.0)) - centre) / safe, vec3f(0.0));
     let ends = select(vec3f(1e30), walls, abs(pace) > vec3f(1e-30));
     let out = centre + pace * min(ends.x, min(ends.y, ends.z));
-    let whole = max(light_depth(0u, out) * extinction - depth, 0.0);
-    return min(exp(-whole) / lessening(lost), 1.0);
+    let whole = max(light_depth(0u, out) - depth, 0.0) * eye;
+    // The deeper in the cell, the less of the beam is left, and the less of the cell is before what it scatters.
+    let opposed = clamp(raw * (beam - eye), 0.0, 80.0);
+    return min(exp(-whole) * lessening(opposed) / lessening(lost), 1.0);
 }
 
 // T' at a face of a cell: side 0 is that with the lower coordinate along the axis, 1 the other. The mean of four places: fewer show as dots
@@ -108,7 +114,6 @@ fn light_up(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) g
     }
     let area = areas.x + areas.y + areas.z;
     let extinction = beam_extinction(medium.rgb, source.g);
-    let mean_extinction = dot(extinction, vec3f(1.0 / 3.0));
     let thickness = min(medium.a * level.unit * volume_of() / max(area, 1e-30), 1e9);
     // No more than the cell can take, wherever in it the medium is: between columns of light its depth is interpolated.
     let most = coming * (1.0 - exp(-MOST_OF_MEAN * thickness * extinction));
@@ -116,16 +121,18 @@ fn light_up(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) g
 
     // Through the cell from the face that light comes in at.
     let ways = level.edges / max(abs(source.travels) * source.axes, vec3f(1e-12));
-    let through = min(medium.a * level.unit * min(ways.x, min(ways.y, ways.z)), 1e9) * mean_extinction;
+    let raw = min(medium.a * level.unit * min(ways.x, min(ways.y, ways.z)), 1e9);
+    let beam = mean_beam_extinction(medium.rgb, source.g);
+    let eye = mean_extinction(medium.rgb, source.aside);
     let found = escape[index];
     let escapes = vec4f(found.xyz, min(found.w, 1.0));
     let towards = clamp(dot(source.travels, escapes.xyz) / max(escapes.w, 1e-20), -1.0, 1.0);
     let leaning = escapes.w + 3.0 * source.g_even * dot(source.travels, escapes.xyz);
-    var out = escaping(leaning, through, -FALL * towards * through);
+    var out = escaping(leaning, raw * beam, -FALL * towards * raw * eye);
     if LEANS {
         let centre = (vec3f(cell) + 0.5) / vec3f(level.cells);
-        let before = -log(clamp(brightness / max(dot(coming, vec3f(1.0)), 1e-30), 1e-30, 1.0));
-        out = mix(out, escaping_straight(centre, before, clamp(through, 0.0, 80.0), mean_extinction), source.lobe);
+        let before = -log(clamp(brightness / max(dot(coming, vec3f(1.0)), 1e-30), 1e-30, 1.0)) / max(beam, 1e-6);
+        out = mix(out, escaping_straight(centre, before, raw, beam, eye), source.lobe);
     }
     let scattered = medium.rgb * beside_peak(source.g) / max(extinction, vec3f(1e-6));
     textureStore(power_out, cell, vec4f((1.0 - out) * scattered * lost, 0.0));

@@ -211,11 +211,9 @@ fn slabs_reflect_and_transmit_what_they_should() {
                 }
             }
         }
-        // What is scattered into the peak goes on with the beam, which no eye beside it sees, but for what is swept towards it.
+        // What is scattered into the peak goes on with the beam, which no eye beside it sees.
         let thinned = Peak::new(number("g")).extinction(albedo);
-        if !towards_eye {
-            fluxes[1] += (-thinned * tau / mu0).exp() - (-tau / mu0).exp();
-        }
+        fluxes[1] += (-thinned * tau / mu0).exp() - (-tau / mu0).exp();
         rows.push((
             number("R"),
             number("T_scattered"),

@@ -366,35 +366,39 @@ impl Furnace {
     }
 }
 
-/// White cubes and slabs, thin and thick, return what they receive and no more: 0.3 % is what 24 views are off by.
+/// White cubes and slabs, thin and thick, return what they receive and no more: 0.3 % is what 24 views are off by. Where light goes on towards
+/// the eye, what spreads over the sides of the box is lost.
 #[test]
 #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn white_media_never_return_more_than_they_receive() {
     let mut studio = Studio::new();
-    let (mut worst, mut least) = ((f64::NEG_INFINITY, String::new()), (f64::INFINITY, String::new()));
+    let mut all = Vec::new();
     for size in [[24, 24, 4], [12, 12, 12]] {
         for light in [DVec3::NEG_Z, DVec3::new(-0.7, 0.0, -0.7), DVec3::new(-0.5, -0.6, -0.7)] {
             for sigma in [0.05, 0.5, 5.0] {
-                for g in [0.0, -0.4, 0.4] {
-                    let lighting = format!("LightVolume(g: {g:?})");
-                    let furnace = Furnace { size, sigma, light: light.normalize(), lighting };
+                for (g, towards_eye) in [(0.0, false), (-0.4, false), (0.4, false), (0.4, true), (0.8, true)]
+                {
+                    let lighting = format!("LightVolume(g: {g:?}, towards_eye: {towards_eye})");
+                    let furnace =
+                        Furnace { size, sigma, light: light.normalize(), lighting: lighting.clone() };
                     let scattered = furnace.scattered(&mut studio);
                     // What is scattered into a peak goes on with the light.
                     let peak = Furnace { sigma: sigma * Peak::new(g).extinction(1.0), ..furnace };
                     let excess = scattered + peak.straight() - 1.0;
-                    let name = format!("{size:?} sigma {sigma} g {g} in {light}: {scattered:.4} scattered");
+                    let name =
+                        format!("{size:?} sigma {sigma} {lighting} in {light}: {scattered:.4} scattered");
                     eprintln!("{name}: {:+.1} %", 100.0 * excess);
-                    if excess > worst.0 {
-                        worst = (excess, name.clone());
-                    }
-                    if excess < least.0 {
-                        least = (excess, name);
-                    }
+                    all.push((towards_eye, excess, name));
                 }
             }
         }
     }
-    eprintln!("from {least:?} to {worst:?}");
-    assert!(worst.0 < 0.003, "{worst:?}");
-    assert!(least.0 > -0.07, "{least:?}");
+    all.sort_by(|a, b| a.1.total_cmp(&b.1));
+    for (towards_eye, floor) in [(false, -0.07), (true, -0.22)] {
+        let of_kind: Vec<_> = all.iter().filter(|case| case.0 == towards_eye).collect();
+        let [least, .., worst] = of_kind[..] else { panic!("no cases") };
+        eprintln!("from {least:?} to {worst:?}");
+        assert!(worst.1 < 0.003, "{worst:?}");
+        assert!(least.1 > floor, "{least:?}");
+    }
 }

@@ -13,7 +13,12 @@ fn beam_extinction(albedo: vec3f, g: f32) -> vec3f {
 
 // The same of a medium for all colours at once.
 fn mean_beam_extinction(albedo: vec3f, g: f32) -> f32 {
-    return dot(beam_extinction(albedo, g), vec3f(1.0 / 3.0));
+    return mean_extinction(albedo, beside_peak(g));
+}
+
+// Extinction where only the share `aside` of scattered light counts as scattered.
+fn mean_extinction(albedo: vec3f, aside: f32) -> f32 {
+    return dot((1.0 - albedo) + albedo * aside, vec3f(1.0 / 3.0));
 }
 
 // T' of the share of the light that arrives unscattered.

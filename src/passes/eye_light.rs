@@ -17,7 +17,7 @@ use crate::gpu::{
     uniform_each,
 };
 use crate::loading::LoadedVolume;
-use crate::optics::phase::henyey_greenstein;
+use crate::optics::{peak::Peak, phase::henyey_greenstein};
 use crate::view::View;
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
@@ -142,9 +142,10 @@ fn recipe(
     let VolumeLighting::LightVolume { g, .. } = *lighting else {
         unreachable!("only light volumes come here")
     };
+    let cap = Peak::new(f64::from(g)).cap;
     let source = |light: &LightVolume| {
         let travels = scene_from_texture.transform_vector3(light.sweep.step()).normalize();
-        let phase = henyey_greenstein(f64::from(g), travels.dot(towards));
+        let phase = henyey_greenstein(f64::from(g), travels.dot(towards)).min(cap);
         (summed.irradiance(light.light) * phase as f32).extend(0.0)
     };
     Recipe {

@@ -1,7 +1,7 @@
 //! The network in which light diffuses through a volume: how well it passes from cell to cell, and what of it stays or leaves.
 //!
 //! Reads [`LightCells`]; writes [`LightNetwork`]: what escapes of each cell (a buffer of vec4f), and for each of the levels, rgba32float, what cells
-//! let go of and how they are linked. Reruns when the cells change, the volume is scaled, or `g` or the cone of its lighting changes; lights
+//! let go of and how they are linked. Reruns when the cells change, the volume is scaled, or `g`, the cone or `towards_eye` of its lighting changes; lights
 //! and the viewer play no part.
 
 pub mod directions;
@@ -52,6 +52,7 @@ struct Recipe {
     cells: u64,
     edges: DVec3,
     g: f32,
+    aside: f32,
     spread: f32,
 }
 
@@ -76,6 +77,7 @@ mirror! {
     "light_network":
     pub(crate) struct DiffusionUniform as "Diffusion" {
         g: f32,
+        aside: f32,
         spread: f32,
     }
 }
@@ -112,7 +114,7 @@ pub(crate) fn run(
     }
     let mut held = 0;
     for (entity, loaded, placement, lighting, shading, cells, kept) in &volumes {
-        let VolumeLighting::LightVolume { g, cone_angle, .. } =
+        let VolumeLighting::LightVolume { g, cone_angle, towards_eye, .. } =
             lighting_in_force(lighting, shading, &settings)
         else {
             commands.entity(entity).remove::<LightNetwork>();
@@ -125,7 +127,7 @@ pub(crate) fn run(
             }
         };
         let edges = edges(scene_from_texture(loaded, placement, &settings), cells);
-        let recipe = Recipe { cells: cells.version, edges, g, spread };
+        let recipe = Recipe { cells: cells.version, edges, g, aside: aside(g, towards_eye), spread };
         if let Some(kept) = kept.filter(|kept| kept.recipe.is_same(&recipe)) {
             held += kept.bytes();
             continue;
@@ -151,6 +153,13 @@ impl Recipe {
         let is_as_large = (self.edges - other.edges).abs().cmple(1e-12 * self.edges).all();
         is_as_large && Self { edges: self.edges, ..*other } == *self
     }
+}
+
+/// The share of scattered light that leaves the way it came to the eye: what is not in the peak, or, where light goes on towards the eye, not
+/// in its cone.
+pub(crate) fn aside(g: f32, towards_eye: bool) -> f32 {
+    let ahead = g.max(0.0);
+    if towards_eye { 1.0 - ahead } else { (1.0 - ahead) * (1.0 + ahead) }
 }
 
 /// Edges of a cell in the scene, as far as the axes of a volume stand upright on each other.
@@ -191,9 +200,9 @@ fn make(
     }
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let around = surroundings(gpu, kernels, &mut encoder, cells, &levels)?;
-    let escape = escape(gpu, kernels, &mut encoder, cells, &levels[0], recipe.g, timing);
-    let diffusion =
-        uniform_buffer(gpu, "diffusion", &DiffusionUniform { g: recipe.g, spread: recipe.spread });
+    let escape = escape(gpu, kernels, &mut encoder, cells, &levels[0], recipe.aside, timing);
+    let Recipe { g, aside, spread, .. } = *recipe;
+    let diffusion = uniform_buffer(gpu, "diffusion", &DiffusionUniform { g, aside, spread });
     let Level { shape, uniform, sinks, links: [x, y, z] } = &levels[0];
     let mut resources = vec![uniform.as_entire_binding(), view(&cells.grid), view(&around)];
     resources.extend([escape.as_entire_binding(), view(sinks), view(x), view(y), view(z)]);
@@ -248,7 +257,7 @@ fn escape(
     encoder: &mut wgpu::CommandEncoder,
     cells: &LightCells,
     level: &Level,
-    g: f32,
+    aside: f32,
     timing: Option<wgpu::ComputePassTimestampWrites>,
 ) -> wgpu::Buffer {
     let cells_along = level.shape.cells;
@@ -256,7 +265,7 @@ fn escape(
     let fans = Fan::all(level.shape.edges);
     let columns = fans.iter().map(|fan| fan.columns(cells_along)).max().unwrap_or(1);
     let planes = storage(gpu, "what gets out of slices", 32 * u64::from(columns));
-    let steps = fans.iter().flat_map(|fan| (0..cells_along[fan.axis]).map(|slice| fan.uniform(slice, g)));
+    let steps = fans.iter().flat_map(|fan| (0..cells_along[fan.axis]).map(|slice| fan.uniform(slice, aside)));
     let (uniforms, stride) = uniform_each(gpu, "fans", &steps.collect::<Vec<_>>());
     let size = <directions::FanUniform as encase::ShaderSize>::SHADER_SIZE;
     let one = wgpu::BufferBinding { buffer: &uniforms, offset: 0, size: Some(size) };

@@ -6,7 +6,7 @@
 mod multigrid;
 
 use super::light_cells::LightCells;
-use super::light_network::LightNetwork;
+use super::light_network::{LightNetwork, aside};
 use super::light_volume::lookup;
 use super::light_volume::{LightVolume, LightVolumes, lighting_in_force, scene_from_texture};
 use super::volume_shadow::{self, VolumeShadow, VolumeShadows};
@@ -52,6 +52,8 @@ pub(crate) struct Source {
     /// Along the axes of the volume, of unit length.
     travels: DVec3,
     pub g: f32,
+    /// Share of scattered light that leaves its way to the eye.
+    aside: f32,
     /// Which axes count: all, or the nearest.
     axes: DVec3,
 }
@@ -74,6 +76,7 @@ mirror! {
         axes: Vec3,
         lobe: f32,
         g_even: f32,
+        aside: f32,
     }
 }
 
@@ -85,7 +88,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 impl Source {
     /// For light that travels in a direction, given in the texture's space.
     pub fn new(lighting: &VolumeLighting, direction: DVec3, scene_from_texture: DAffine3) -> Self {
-        let VolumeLighting::LightVolume { blend, g, .. } = *lighting else {
+        let VolumeLighting::LightVolume { blend, g, towards_eye, .. } = *lighting else {
             unreachable!("only light volumes have cells")
         };
         let axes = scene_from_texture.matrix3;
@@ -94,7 +97,7 @@ impl Source {
         // Light along a face does not come in through it.
         let crossed = DVec3::select(travels.abs().cmpgt(DVec3::splat(1e-6)), DVec3::ONE, DVec3::ZERO);
         let axes = if blend { crossed } else { DVec3::AXES[travels.abs().max_position()] };
-        Self { travels, g, axes }
+        Self { travels, g, axes, aside: aside(g, towards_eye) }
     }
 
     fn uniform(&self) -> SourceUniform {
@@ -105,6 +108,7 @@ impl Source {
             axes: self.axes.as_vec3(),
             lobe: peak.lobe as f32,
             g_even: peak.g_even as f32,
+            aside: self.aside,
         }
     }
 }

@@ -215,7 +215,11 @@ pub const TABLE: Table = Table {
         ("fog.VolumeLighting.cone_angle", "30.0", FOG_SCATTERS_OTHERWISE),
         ("fog.VolumeLighting.resolution", "0.5", "light_volume 2, scattered_light 2, summed_light 1"),
         ("fog.VolumeLighting.blend", "false", "scattered_light 2, summed_light 1"),
-        ("fog.VolumeLighting.towards_eye", "true", "eye_light 1"),
+        (
+            "fog.VolumeLighting.towards_eye",
+            "true",
+            "light_network 1, scattered_light 2, summed_light 1, eye_light 1",
+        ),
         ("fog.VolumeLighting.gradient_specular", "0.2", ""),
         ("fog.VolumeLighting.emission", "0.1", ""),
         ("fog.VolumeLighting.g", "0.3", FOG_SCATTERS_OTHERWISE),

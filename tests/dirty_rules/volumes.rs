@@ -86,6 +86,6 @@ pub const TABLE: Table = Table {
         ("cloud.TransferFunction.classification", "Post", "classify 1 of 64 entries"),
         ("cloud.VolumeLighting.cone_angle", "50.0", CLOUD_SCATTERS_OTHERWISE),
         ("cloud.VolumeLighting.g", "0.5", CLOUD_SCATTERS_OTHERWISE),
-        ("cloud.VolumeLighting.towards_eye", "false", ""),
+        ("cloud.VolumeLighting.towards_eye", "false", "light_network 1, scattered_light 2, summed_light 1"),
     ],
 };

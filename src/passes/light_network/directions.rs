@@ -50,7 +50,7 @@ impl Fan {
     }
 
     /// What the shader knows of it on its way through a slice.
-    pub fn uniform(&self, slice: u32, g: f32) -> FanUniform {
+    pub fn uniform(&self, slice: u32, aside: f32) -> FanUniform {
         FanUniform {
             cosines: self.cosines.as_vec3(),
             axis: self.axis as u32,
@@ -59,7 +59,7 @@ impl Fan {
             slope: self.slope.as_vec2(),
             way: self.way as f32,
             share: SAFETY / COUNT,
-            g,
+            aside,
         }
     }
 
@@ -80,7 +80,7 @@ mirror! {
         slope: Vec2,
         way: f32,
         share: f32,
-        g: f32,
+        aside: f32,
     }
 }
 
