@@ -88,10 +88,10 @@ struct March {
 const RUN = 16.0;
 
 // Samples that are lit together where light is scattered often, at most, and the optical depth that is enough for them: light varies by
-// less over them than the model is off. Twice that where half of the light from there does not reach the eye.
-const TOGETHER = 4.0;
+// less over them than the model is off. More, to four times that, the less of the light from there reaches the eye.
+const TOGETHER = 2.0;
 const DEPTH_TOGETHER = 0.3;
-const LEAST_SEEN = 0.5;
+const LEAST_SEEN = 0.25;
 
 fn start_march(index: u32, ray: Ray, surface_distance: f32) -> March {
     let origin = (volumes[index].texture_from_eye * vec4f(ray.origin, 1.0)).xyz;
@@ -190,10 +190,22 @@ fn shade(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre
     return colour * (volume.ambient + volume.diffuse * diffuse) + volume.specular * specular;
 }
 
+// What is lit at once: a sample, or several that are close.
+struct Sample {
+    colour: vec3f,
+    // Where it is: as a share of the volume, and along the ray from where it enters.
+    place: vec3f,
+    along: f32,
+    texel: f32,
+    // 1 - albedo f.
+    thinned: f32,
+}
+
 // Light that is scattered towards the eye: the source function where the albedo is `colour`. Where light is scattered often, what a forward
-// peak scatters counts as light that was not (`src/optics/peak.rs`); `thinned` is 1 - albedo f.
-fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, thinned: f32, place: vec3f, centre: f32, ray: Ray) -> vec3f {
-    let albedo = min(colour, vec3f(1.0));
+// peak scatters counts as light that was not (`src/optics/peak.rs`).
+fn scatter(index: u32, volume: VolumeInstance, sample: Sample, ray: Ray, ways: array<LightWay, LIGHT_WAYS>) -> vec3f {
+    let place = sample.place;
+    let albedo = min(sample.colour, vec3f(1.0));
     let is_often = ANY_OFTEN && volume.lighting >= 4u;
     let towards_eye = ANY_TOWARDS_EYE && volume.lighting == 5u;
     let cap = select(3e38, volume.peak_cap, is_often);
@@ -201,10 +213,10 @@ fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, thinned: f32, plac
     var specular = vec3f(0.0);
     var normal: Normal;
     if ANY_HIGHLIGHT {
-        normal = normal_at(index, volume, place, centre, ray);
+        normal = normal_at(index, volume, place, sample.texel, ray);
     }
     for (var i = 0u; i < LIGHTS; i += 1u) {
-        let depth = light_depth(volume.first_sweep + i, place);
+        let depth = light_depth_on(volume.first_sweep + i, ways[i], sample.along);
         let light = lights[i].irradiance * light_seen(volume.first_sweep + i, place);
         if ANY_LEANING {
             let phase = min(henyey_greenstein(-lights[i].to_light, -ray.direction, volume.g), cap);
@@ -228,7 +240,7 @@ fn scatter(index: u32, volume: VolumeInstance, colour: vec3f, thinned: f32, plac
         // Of lights that have no light volume of their own.
         arriving += volume.fluence_scale / (4.0 * PI) * fluence_at(index, place);
     }
-    let sent = albedo * arriving / thinned + volume.emission * colour;
+    let sent = albedo * arriving / sample.thinned + volume.emission * sample.colour;
     if ANY_HIGHLIGHT {
         return sent + volume.specular * min(4.0 * normal.steepness, 1.0) * specular;
     }
@@ -244,14 +256,52 @@ fn thinning(volume: VolumeInstance, colour: vec3f) -> f32 {
 }
 
 // What a piece of the medium sends to the eye, per share that it absorbs.
-fn source(index: u32, volume: VolumeInstance, colour: vec3f, thinned: f32, place: vec3f, centre: f32, ray: Ray) -> vec3f {
+fn source(index: u32, volume: VolumeInstance, sample: Sample, ray: Ray, ways: array<LightWay, LIGHT_WAYS>) -> vec3f {
     if ANY_GRADIENT && volume.lighting == 1u {
-        return shade(index, volume, colour, place, centre, ray);
+        return shade(index, volume, sample.colour, sample.place, sample.texel, ray);
     }
     if ANY_SCATTERING && (volume.lighting == 2u || volume.lighting >= 4u) {
-        return scatter(index, volume, colour, thinned, place, centre, ray);
+        return scatter(index, volume, sample, ray, ways);
     }
-    return select(colour, volume.emission * colour, volume.lighting == 3u);
+    return select(sample.colour, volume.emission * sample.colour, volume.lighting == 3u);
+}
+
+// What is found at a place.
+struct Found {
+    colour: vec3f,
+    extinction: f32,
+    texel: f32,
+}
+
+fn found_at(index: u32, volume: VolumeInstance, lookup: Lookup, classification: u32, at: vec3f) -> Found {
+    if ANY_PRE && classification == PRE {
+        let found = pre_classified(index, at, volume.greatest_colour, volume.greatest_extinction);
+        return Found(found.rgb, found.a, 0.0);
+    }
+    let texel = texel_at(index, at);
+    let found = look_up(index, lookup, texel);
+    return Found(found.rgb, found.a, texel);
+}
+
+// Samples that are lit together: what they absorb, and sums of what they are by what each shows.
+struct Together {
+    colour: vec3f,
+    along: f32,
+    texel: f32,
+    depth: f32,
+    alpha: f32,
+}
+
+// The same with one more.
+fn joined(all: Together, colour: vec3f, depth: f32, along: f32, texel: f32) -> Together {
+    let shown = (1.0 - all.alpha) * absorbed(depth);
+    return Together(
+        all.colour + shown * colour,
+        all.along + shown * along,
+        all.texel + shown * texel,
+        all.depth + depth,
+        all.alpha + shown,
+    );
 }
 
 @fragment
@@ -294,6 +344,10 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let lookup = Lookup(f32(volume.table_entries - 1u), volume.lookup_scale, volume.lookup_offset, volume.sentinel);
         let direction = (volume.texture_from_eye * vec4f(ray.direction, 0.0)).xyz;
         let start = (volume.texture_from_eye * vec4f(ray.origin, 1.0)).xyz + direction * enter;
+        var ways: array<LightWay, LIGHT_WAYS>;
+        for (var i = 0u; i < LIGHTS; i += 1u) {
+            ways[i] = light_way(volume.first_sweep + i, start, direction);
+        }
         // The same in bricks.
         let bricks = volume.size / BRICK;
         let pace = away_from_zero(direction * bricks * volume.step);
@@ -323,6 +377,7 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                 done += select(max(1.0, ceil(wall_distance)), floor(wall_distance), integrated);
             }
             let end = min(done + RUN, turn);
+            samples -= done;
             var front = 0.0;
             var back = 0.0;
             if integrated {
@@ -332,64 +387,50 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                 if done >= end {
                     break;
                 }
-                // Of the samples that are lit together: what they absorb, and their means by what each shows.
-                var length = 0.0;
-                var place = vec3f(0.0);
-                var texel = 0.0;
-                var colour = vec3f(0.0);
-                var depth = 0.0;
-                var alpha = 0.0;
-                var together = end;
+                var together = Together();
+                var until_together = end;
                 let seen = max(select(transmittance, thin_transmittance, ANY_PEAK), LEAST_SEEN);
                 // On to a sample that absorbs, and a few more where light is scattered often: to look it up costs most, and all lanes are
                 // to have something to look up.
                 loop {
-                    length = min(volume.step, leave - enter - done * volume.step);
-                    var at = vec3f(0.0);
-                    var at_texel = 0.0;
-                    var found = vec4f(0.0);
+                    until_together = select(until_together, min(end, done + floor(TOGETHER / seen)), together.depth == 0.0);
+                    let length = min(volume.step, leave - enter - done * volume.step);
                     if integrated {
                         front = back;
                         back = texel_at(index, start + direction * (done * volume.step + length));
-                        found = pre_integrated(index, lookup, front, back, length / volume.step);
-                    } else {
-                        at = start + direction * (done * volume.step + 0.5 * length);
-                        if ANY_PRE && classification == PRE {
-                            found = pre_classified(index, at, volume.greatest_colour, volume.greatest_extinction);
-                        } else {
-                            at_texel = texel_at(index, at);
-                            found = look_up(index, lookup, at_texel);
+                        let found = pre_integrated(index, lookup, front, back, length / volume.step);
+                        var at = 0.5;
+                        if ANY_LIT {
+                            at = surface_in(index, lookup, front, back);
                         }
+                        let along = done * volume.step + at * length;
+                        together = joined(together, found.rgb, found.a, along, mix(front, back, at));
+                    } else {
+                        let along = done * volume.step + 0.5 * length;
+                        let found = found_at(index, volume, lookup, classification, start + direction * along);
+                        together = joined(together, found.colour, found.extinction * volume.reach * length, along, found.texel);
                     }
-                    let more = found.a * select(volume.reach * length, 1.0, integrated);
-                    let shown = (1.0 - alpha) * absorbed(more);
-                    alpha += shown;
-                    let part = shown / max(alpha, 1e-30);
-                    colour = mix(colour, found.rgb, part);
-                    place = mix(place, at, part);
-                    texel = mix(texel, at_texel, part);
-                    together = select(together, min(end, done + floor(TOGETHER / seen)), depth == 0.0);
-                    depth += more;
                     done += 1.0;
-                    samples += 1.0;
-                    let is_enough = alone || depth * seen > DEPTH_TOGETHER || done >= together;
-                    if !ANY_LIT || done >= end || (depth > 0.0 && is_enough) {
+                    let is_enough = alone || together.depth * seen > DEPTH_TOGETHER || done >= until_together;
+                    if !ANY_LIT || done >= end || (together.depth > 0.0 && is_enough) {
                         break;
                     }
                 }
-                let thinned = thinning(volume, colour);
+                let alpha = together.alpha;
+                let depth = together.depth;
+                let part = 1.0 / max(alpha, 1e-30);
+                var sample = Sample(together.colour * part, vec3f(0.0), together.along * part, together.texel * part, 1.0);
+                sample.thinned = thinning(volume, sample.colour);
+                var colour = sample.colour;
                 if ANY_LIT {
-                    if integrated {
-                        let part = surface_in(index, lookup, front, back);
-                        place = start + direction * ((done - 1.0) * volume.step + part * length);
-                        texel = mix(front, back, part);
-                    } else if ANY_PRE && classification == PRE {
-                        texel = texel_at(index, place);
+                    sample.place = start + direction * sample.along;
+                    if ANY_PRE && classification == PRE {
+                        sample.texel = texel_at(index, sample.place);
                     }
-                    colour = source(index, volume, colour, thinned, place, texel, ray);
+                    colour = source(index, volume, sample, ray, ways);
                 }
                 if ANY_PEAK {
-                    let thin_alpha = absorbed(depth * thinned);
+                    let thin_alpha = absorbed(depth * sample.thinned);
                     radiance += thin_transmittance * thin_alpha * colour;
                     thin_transmittance *= 1.0 - thin_alpha;
                 } else {
@@ -400,6 +441,7 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                     break;
                 }
             }
+            samples += done;
             if done >= turn || select(transmittance, thin_transmittance, ANY_PEAK) <= volume.least_transmittance {
                 break;
             }

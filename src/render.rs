@@ -173,7 +173,8 @@ pub(crate) fn read_image(world: &World, encoded: bool) -> Result<Image, GpuError
     let pixels = match &world.resource::<Tonemap>().encoded {
         Some(target) if encoded => {
             let bytes = read_texture(gpu, &target.texture)?;
-            Pixels::Encoded(bytes.chunks_exact(4).map(|texel| [texel[0], texel[1], texel[2]]).collect())
+            let (texels, _) = bytes.as_chunks::<4>();
+            Pixels::Encoded(texels.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect())
         }
         _ => Pixels::Radiance(read_radiance(world)?.into_iter().map(|[r, g, b, _]| [r, g, b]).collect()),
     };

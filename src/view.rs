@@ -1,9 +1,11 @@
 //! The camera and the lights of a frame, as shaders want them.
 
 mod asked;
+mod covered;
 
 pub use asked::{Coarseness, Comparison, Drawing, FreeCamera, Picture, Split, Viewpoint};
 pub(crate) use asked::{Part, in_parts, is_wanted};
+pub(crate) use covered::{Pixels, covered};
 
 use crate::Stage;
 use crate::components::{DirectionalLight, Motion, Placement, Projection, SceneSettings, ViewCamera};

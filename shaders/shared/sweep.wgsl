@@ -18,6 +18,28 @@ fn light_reach(sweep: Sweep, place: vec3f) -> f32 {
     return max(min(reach.x, min(reach.y, reach.z)), 0.0);
 }
 
+// A straight way through the volume, place = start + direction * along, among the columns: nothing but sums are left to do along it.
+struct LightWay {
+    texel: vec3f,
+    texel_pace: vec3f,
+    reach: vec3f,
+    reach_pace: vec3f,
+}
+
+fn way_through(sweep: Sweep, start: vec3f, direction: vec3f) -> LightWay {
+    return LightWay(
+        (sweep.texel_from_texture * vec4f(start, 1.0)).xyz,
+        (sweep.texel_from_texture * vec4f(direction, 0.0)).xyz,
+        start * sweep.reach_scale + sweep.reach_offset,
+        direction * sweep.reach_scale,
+    );
+}
+
+fn reach_on(way: LightWay, along: f32) -> f32 {
+    let reach = way.reach + way.reach_pace * along;
+    return max(min(reach.x, min(reach.y, reach.z)), 0.0);
+}
+
 // A texel of a repeated grid, for interpolation by hand.
 fn light_texel(sweep: Sweep, at: vec3i) -> vec3i {
     let size = vec3i(sweep.size);

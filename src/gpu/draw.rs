@@ -1,7 +1,7 @@
 //! A draw: one shader, one bind group, one colour target.
 
 use super::live::Live;
-use super::{Gpu, GpuError, Target};
+use super::{Gpu, GpuError};
 use std::ops::Range;
 
 /// A render pipeline and the layout of its bind group 0.
@@ -64,35 +64,38 @@ impl Draw {
         target: &wgpu::TextureView,
         timing: Option<wgpu::RenderPassTimestampWrites>,
     ) {
-        self.cover_with(gpu, &[(self.bind(gpu, resources), None)], target, timing);
+        self.cover_with(gpu, &[(self.bind(gpu, resources), None)], wgpu::Color::BLACK, target, timing);
     }
 
-    /// Draws over a target in parts, each a stretch of columns with resources of its own, in one pass.
+    /// Draws over rectangles of a target, columns and rows, each with resources of its own, in one pass. What is beside them all is
+    /// cleared.
     pub fn cover_parts(
         &self,
         gpu: &Gpu,
-        parts: &[(Range<u32>, Vec<wgpu::BindingResource>)],
-        target: &Target,
+        parts: &[([Range<u32>; 2], Vec<wgpu::BindingResource>)],
+        beside: wgpu::Color,
+        target: &wgpu::TextureView,
         timing: Option<wgpu::RenderPassTimestampWrites>,
     ) {
-        let height = target.texture.height();
-        let bound = |(columns, resources): &(Range<u32>, Vec<wgpu::BindingResource>)| {
-            (self.bind(gpu, resources), Some((columns.clone(), height)))
+        let bound = |(rectangle, resources): &([Range<u32>; 2], Vec<wgpu::BindingResource>)| {
+            (self.bind(gpu, resources), Some(rectangle.clone()))
         };
-        let parts: Vec<_> = parts.iter().map(bound).collect();
-        self.cover_with(gpu, &parts, &target.view, timing);
+        let parts: Vec<_> =
+            parts.iter().filter(|(sides, _)| !sides.iter().any(Range::is_empty)).map(bound).collect();
+        self.cover_with(gpu, &parts, beside, target, timing);
     }
 
     fn cover_with(
         &self,
         gpu: &Gpu,
-        parts: &[(wgpu::BindGroup, Option<(Range<u32>, u32)>)],
+        parts: &[(wgpu::BindGroup, Option<[Range<u32>; 2]>)],
+        beside: wgpu::Color,
         target: &wgpu::TextureView,
         timing: Option<wgpu::RenderPassTimestampWrites>,
     ) {
         let label = Some(self.label);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
-        let load = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
+        let load = wgpu::LoadOp::Clear(beside);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label,
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -104,10 +107,10 @@ impl Draw {
             timestamp_writes: timing,
             ..Default::default()
         });
-        for (bind_group, stretch) in parts {
+        for (bind_group, rectangle) in parts {
             self.begin(&mut pass, bind_group, &[]);
-            if let Some((columns, height)) = stretch {
-                pass.set_scissor_rect(columns.start, 0, columns.end - columns.start, *height);
+            if let Some([columns, rows]) = rectangle {
+                pass.set_scissor_rect(columns.start, rows.start, columns.len() as u32, rows.len() as u32);
             }
             pass.draw(0..3, 0..1);
         }

@@ -19,7 +19,8 @@ pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuEr
     );
     gpu.queue.submit([encoder.finish()]);
     let bytes = read_mapped(gpu, &buffer)?;
-    Ok(bytes.chunks_exact(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
+    let lines: Vec<&[u8]> = bytes.chunks_exact(padded as usize).map(|line| &line[..row as usize]).collect();
+    Ok(lines.concat())
 }
 
 /// The bytes of a buffer that can be copied from.

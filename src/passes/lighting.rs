@@ -99,7 +99,8 @@ impl Kinds {
             let _ = writeln!(text, "const {name} = {value};");
         }
         // A number that is known unrolls the loop over lights, which then fetches each as it is.
-        let _ = writeln!(text, "const LIGHTS = {}u;", self.lights);
+        let _ =
+            writeln!(text, "const LIGHTS = {}u;\nconst LIGHT_WAYS = {}u;", self.lights, self.lights.max(1));
         // Lavapipe compiles shaders anew for the values of uniforms that they branch on, and with them for others, which change from frame to frame.
         let _ = writeln!(text, "fn lighting_of(volume: u32, asked: u32) -> u32 {{\n    switch volume {{");
         for (volume, kind) in self.of_volumes.iter().enumerate() {

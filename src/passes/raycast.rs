@@ -28,8 +28,8 @@ use crate::optics::peak::Peak;
 use crate::scene::{Problem, Problems};
 use crate::sources::BrickRanges;
 use crate::view::{
-    Coarseness, Comparison, FrameBuffers, Part, Picture, View, far_background, in_parts, is_wanted,
-    lights_module,
+    Coarseness, Comparison, FrameBuffers, Part, Picture, Pixels, View, covered, far_background, in_parts,
+    is_wanted, lights_module,
 };
 use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};
@@ -37,7 +37,6 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
 use glam::{DAffine3, DVec3, Mat4, UVec2, UVec3, Vec3, Vec4};
 use std::fmt::Write;
-use std::ops::Range;
 
 /// Casts rays through volumes.
 pub(crate) struct RayCastPlugin;
@@ -193,13 +192,20 @@ fn run(
     let lights = frame.light_count.min(kept_lights.0 as u32);
     let kinds = Kinds::of(volumes.iter().map(lit_in).collect(), lights);
     let drawn = prepare(&gpu, &picture, kinds, &volumes, &frame, &mut caster, &mut report).map(|()| {
-        let of_part = |part: Part| {
-            let shading = part.shading;
-            (part.columns, instances((&view, &coarseness), &settings, &volumes, shading, &caster))
+        let boxes =
+            volumes.iter().map(|volume| scene_from_texture(volume.loaded, volume.placement, &settings));
+        // Beside the volumes there is nothing but the background, unless there are meshes.
+        let pixels = match surface.colour() {
+            Some(_) => Pixels::all(picture.size),
+            None => covered(&view, picture.size, boxes),
+        };
+        let of_part = |Part { columns, shading }: Part| {
+            let instances = instances((&view, &coarseness), &settings, &volumes, shading, &caster);
+            (pixels.within(&columns), instances)
         };
         let parts: Vec<_> = parts.into_iter().map(of_part).collect();
         draw(&gpu, &frame, &settings, &volumes, &parts, &surface, &caster, timing);
-        report.ran("raycast", &[("pixels", u64::from(picture.size.x) * u64::from(picture.size.y))]);
+        report.ran("raycast", &[("pixels", parts.iter().map(|(pixels, _)| pixels.count()).sum())]);
     });
     failure.keep(drawn);
 }
@@ -630,7 +636,7 @@ fn draw(
     frame: &FrameBuffers,
     settings: &SceneSettings,
     volumes: &[VolumeData],
-    parts: &[(Range<u32>, Vec<VolumeInstance>)],
+    parts: &[(Pixels, Vec<VolumeInstance>)],
     surface: &Surface,
     caster: &RayCaster,
     timing: Option<wgpu::RenderPassTimestampWrites>,
@@ -682,11 +688,13 @@ fn draw(
     });
     resources.extend(grids.map(|grid| wgpu::BindingResource::TextureView(&grid.view)));
     let mut bound = Vec::new();
-    for ((columns, _), instances) in parts.iter().zip(&instances) {
+    for ((Pixels { columns, rows }, _), instances) in parts.iter().zip(&instances) {
         resources[INSTANCES] = instances.as_entire_binding();
-        bound.push((columns.clone(), resources.clone()));
+        bound.push(([columns.clone(), rows.clone()], resources.clone()));
     }
-    draw.cover_parts(gpu, &bound, target, timing);
+    // The last number counts samples.
+    let [r, g, b] = settings.background.to_array().map(f64::from);
+    draw.cover_parts(gpu, &bound, wgpu::Color { r, g, b, a: 0.0 }, &target.view, timing);
 }
 
 fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {

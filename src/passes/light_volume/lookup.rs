@@ -13,8 +13,23 @@ pub(crate) fn filtering(gpu: &Gpu) -> Filtering {
     }
 }
 
+/// What it is without any.
+const NONE: &str = "#import sweep
+const SWEEPS = 0u;
+fn light_depth(index: u32, place: vec3f) -> f32 {
+    return 0.0;
+}
+fn light_way(index: u32, start: vec3f, direction: vec3f) -> LightWay {
+    return LightWay();
+}
+fn light_depth_on(index: u32, way: LightWay, along: f32) -> f32 {
+    return 0.0;
+}
+";
+
 /// The module `light_volumes` of a shader that looks up `count` light volumes: `light_depth(index, place)` is the optical depth
-/// towards the light, `light_left` the share of it that arrives. Its bindings, from `first` on: the sweeps, a sampler, and one texture
+/// towards the light, `light_left` the share of it that arrives, and `light_depth_on(index, way, along)` the depth on a straight way, of which
+/// `light_way` has found out before what it takes. Its bindings, from `first` on: the sweeps, a sampler, and one texture
 /// each; none at all for none.
 pub(crate) fn light_volumes_module(
     count: usize,
@@ -22,16 +37,14 @@ pub(crate) fn light_volumes_module(
     first: usize,
 ) -> (&'static str, String) {
     if count == 0 {
-        let none =
-            "const SWEEPS = 0u;\nfn light_depth(index: u32, place: vec3f) -> f32 {\n    return 0.0;\n}\n";
-        return ("light_volumes", none.into());
+        return ("light_volumes", NONE.into());
     }
     let mut text = format!(
         "#import sweep\nconst SWEEPS = {count}u;\n@group(0) @binding({first}) var<uniform> sweeps: array<Sweep, SWEEPS>;\n\
          @group(0) @binding({}) var repeating: sampler;\n",
         first + 1
     );
-    let mut cases = String::new();
+    let (mut depths, mut ways, mut on_ways) = (String::new(), String::new(), String::new());
     for index in 0..count {
         let binding = first + 2 + index;
         // Writing to a String cannot fail.
@@ -45,18 +58,33 @@ pub(crate) fn light_volumes_module(
         };
         let label = if index == 0 { "default".into() } else { format!("case {index}u") };
         // Of each the number as it is: software adapters fetch what an index points at lane by lane.
+        let sweep = format!("sweeps[{index}]");
         let _ = writeln!(
-            cases,
+            depths,
             "        {label}: {{
-            let at = (sweeps[{index}].texel_from_texture * vec4f(place, 1.0)).xyz;
-            return {value} * light_reach(sweeps[{index}], place);
+            let at = ({sweep}.texel_from_texture * vec4f(place, 1.0)).xyz;
+            return {value} * light_reach({sweep}, place);
+        }}"
+        );
+        let _ = writeln!(ways, "        {label}: {{ return way_through({sweep}, start, direction); }}");
+        let _ = writeln!(
+            on_ways,
+            "        {label}: {{
+            let at = way.texel + way.texel_pace * along;
+            return {value} * reach_on(way, along);
         }}"
         );
     }
     let _ = write!(
         text,
         "fn light_depth(index: u32, place: vec3f) -> f32 {{
-    switch index {{\n{cases}    }}
+    switch index {{\n{depths}    }}
+}}
+fn light_way(index: u32, start: vec3f, direction: vec3f) -> LightWay {{
+    switch index {{\n{ways}    }}
+}}
+fn light_depth_on(index: u32, way: LightWay, along: f32) -> f32 {{
+    switch index {{\n{on_ways}    }}
 }}
 fn light_left(index: u32, place: vec3f) -> f32 {{
     return exp(-light_depth(index, place));
