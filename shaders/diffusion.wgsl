@@ -89,16 +89,11 @@ fn gather_surplus(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgro
         return;
     }
     let cell = cell_of(index, level.coarser);
-    let first = cell * level.factor;
-    let end = min(first + level.factor, level.cells);
+    let children = children_of(cell);
     var sum = vec3f(0.0);
-    for (var z = first.z; z < end.z; z += 1u) {
-        for (var y = first.y; y < end.y; y += 1u) {
-            for (var x = first.x; x < end.x; x += 1u) {
-                let child = vec3u(x, y, z);
-                sum += balance_of(child, textureLoad(fluence, child, 0).rgb).surplus;
-            }
-        }
+    for (var i = 0u; i < count_of(children.size); i += 1u) {
+        let child = child_of(children, i);
+        sum += balance_of(child, textureLoad(fluence, child, 0).rgb).surplus;
     }
     textureStore(out, cell, vec4f(sum, 0.0));
 }
@@ -111,15 +106,10 @@ fn gather_power(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
         return;
     }
     let cell = cell_of(index, level.coarser);
-    let first = cell * level.factor;
-    let end = min(first + level.factor, level.cells);
+    let children = children_of(cell);
     var sum = vec3f(0.0);
-    for (var z = first.z; z < end.z; z += 1u) {
-        for (var y = first.y; y < end.y; y += 1u) {
-            for (var x = first.x; x < end.x; x += 1u) {
-                sum += textureLoad(power, vec3u(x, y, z), 0).rgb;
-            }
-        }
+    for (var i = 0u; i < count_of(children.size); i += 1u) {
+        sum += textureLoad(power, child_of(children, i), 0).rgb;
     }
     textureStore(out, cell, vec4f(sum, 0.0));
 }

@@ -26,18 +26,12 @@ fn average(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gr
         return;
     }
     let cell = cell_of(index, level.coarser);
-    let first = cell * level.factor;
-    let end = min(first + level.factor, level.cells);
+    let children = children_of(cell);
     var sum = 0.0;
-    for (var z = first.z; z < end.z; z += 1u) {
-        for (var y = first.y; y < end.y; y += 1u) {
-            for (var x = first.x; x < end.x; x += 1u) {
-                sum += textureLoad(fine, vec3u(x, y, z), 0).a;
-            }
-        }
+    for (var i = 0u; i < count_of(children.size); i += 1u) {
+        sum += textureLoad(fine, child_of(children, i), 0).a;
     }
-    let children = count_of(end - first);
-    textureStore(mean_out, cell, vec4f(0.0, 0.0, 0.0, sum / f32(children)));
+    textureStore(mean_out, cell, vec4f(0.0, 0.0, 0.0, sum / f32(count_of(children.size))));
 }
 
 // --- Extinction of the surroundings, from the coarsest level to the finest.
@@ -140,23 +134,19 @@ fn coarsen(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) gr
         return;
     }
     let cell = cell_of(index, level.coarser);
-    let first = cell * level.factor;
-    let end = min(first + level.factor, level.cells);
+    let children = children_of(cell);
     var sink = vec3f(0.0);
     var x_link = vec3f(0.0);
     var y_link = vec3f(0.0);
     var z_link = vec3f(0.0);
-    for (var z = first.z; z < end.z; z += 1u) {
-        for (var y = first.y; y < end.y; y += 1u) {
-            for (var x = first.x; x < end.x; x += 1u) {
-                let child = vec3u(x, y, z);
-                sink += textureLoad(sinks, child, 0).rgb;
-                // Only what leads out of the coarser cell.
-                x_link += select(vec3f(0.0), textureLoad(x_links, child, 0).rgb, x + 1u == end.x);
-                y_link += select(vec3f(0.0), textureLoad(y_links, child, 0).rgb, y + 1u == end.y);
-                z_link += select(vec3f(0.0), textureLoad(z_links, child, 0).rgb, z + 1u == end.z);
-            }
-        }
+    for (var i = 0u; i < count_of(children.size); i += 1u) {
+        let child = child_of(children, i);
+        let is_last = child + 1u == children.first + children.size;
+        sink += textureLoad(sinks, child, 0).rgb;
+        // Only what leads out of the coarser cell.
+        x_link += select(vec3f(0.0), textureLoad(x_links, child, 0).rgb, is_last.x);
+        y_link += select(vec3f(0.0), textureLoad(y_links, child, 0).rgb, is_last.y);
+        z_link += select(vec3f(0.0), textureLoad(z_links, child, 0).rgb, is_last.z);
     }
     // The middles of coarser cells are farther apart.
     let farther = vec3f(level.factor);

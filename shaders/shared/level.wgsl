@@ -24,6 +24,21 @@ fn cell_of(index: u32, cells: vec3u) -> vec3u {
     return vec3u(index % cells.x, (index / cells.x) % cells.y, index / (cells.x * cells.y));
 }
 
+// The cells that make one of the coarser level.
+struct Children {
+    first: vec3u,
+    size: vec3u,
+}
+
+fn children_of(coarser: vec3u) -> Children {
+    let first = coarser * level.factor;
+    return Children(first, min(level.factor, level.cells - first));
+}
+
+fn child_of(children: Children, index: u32) -> vec3u {
+    return children.first + cell_of(index, children.size);
+}
+
 fn volume_of() -> f32 {
     return level.edges.x * level.edges.y * level.edges.z;
 }

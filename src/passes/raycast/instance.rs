@@ -1,0 +1,175 @@
+//! A volume as the ray caster's shader knows it.
+
+use super::{VolumeData, classification_of};
+use crate::components::{Classification, SceneSettings, Shading, VolumeLighting};
+use crate::mirrors::mirror;
+use crate::optics::peak::Peak;
+use crate::passes::light_volume::{lighting_in_force, scene_from_texture};
+use crate::passes::lighting::{EMITS, GRADIENT, SCATTERS, SCATTERS_ONCE, SCATTERS_TOWARDS_EYE, UNLIT};
+use crate::passes::upload::SENTINEL_THRESHOLD;
+use crate::view::{Coarseness, View};
+use glam::{DAffine3, DVec3, Mat4, UVec3, Vec3};
+
+mirror! {
+    /// Mirror of `VolumeInstance` in `shaders/raycast.wgsl`.
+    "raycast":
+    pub(crate) struct VolumeInstance as "VolumeInstance" {
+        texture_from_eye: Mat4,
+        size: Vec3,
+        step: f32,
+        lookup_scale: f32,
+        lookup_offset: f32,
+        table_entries: u32,
+        bricks_start: u32,
+        bricks: UVec3,
+        least_transmittance: f32,
+        skip_empty: u32,
+        lighting: u32,
+        ambient: f32,
+        diffuse: f32,
+        specular: f32,
+        shininess: f32,
+        sentinel: f32,
+        reach: f32,
+        g: f32,
+        emission: f32,
+        first_sweep: u32,
+        fluence_scale: f32,
+        peak_cap: f32,
+        greatest_colour: f32,
+        greatest_extinction: f32,
+    }
+}
+
+/// All volumes for one draw.
+pub fn instances(
+    view: (&View, &Coarseness),
+    settings: &SceneSettings,
+    volumes: &[VolumeData],
+    shading: Shading,
+    starts: &[u32],
+) -> Vec<VolumeInstance> {
+    let mut first_sweep = 0;
+    let mut all = Vec::new();
+    for (volume, start) in volumes.iter().zip(starts) {
+        all.push(instance(
+            view,
+            volume,
+            scene_from_texture(volume.loaded, volume.placement, settings),
+            lit(volume, settings, shading),
+            *start,
+            first_sweep,
+        ));
+        first_sweep += volume.light_volumes.map_or(0, |own| own.0.len() as u32);
+    }
+    all
+}
+
+fn instance(
+    (view, coarseness): (&View, &Coarseness),
+    volume: &VolumeData,
+    scene_from_texture: DAffine3,
+    lit: Lit,
+    bricks_start: u32,
+    first_sweep: u32,
+) -> VolumeInstance {
+    let VolumeData { loaded, classified, texture, ray_cast, voxels, summed, .. } = volume;
+    let eye_from_texture = view.eye_from_scene * scene_from_texture;
+    let size = DVec3::from(loaded.data.size.map(f64::from));
+    let axes = eye_from_texture.matrix3;
+    let voxel =
+        (axes.x_axis.length() / size.x).min(axes.y_axis.length() / size.y).min(axes.z_axis.length() / size.z);
+    let (lookup_scale, lookup_offset) = classified.lookup(texture.format);
+    let [greatest_colour, greatest_extinction] = voxels.map_or([1.0; 2], |voxels| voxels.greatest);
+    let coarser = match classification_of(volume) {
+        Classification::PreIntegrated => 1.0,
+        _ => coarseness.step,
+    };
+    VolumeInstance {
+        texture_from_eye: glam::DMat4::from(eye_from_texture.inverse()).as_mat4(),
+        size: size.as_vec3(),
+        step: (voxel * f64::from(ray_cast.step * coarser)) as f32,
+        lookup_scale,
+        lookup_offset,
+        table_entries: classified.table.entries.len() as u32,
+        bricks_start,
+        bricks: UVec3::from(classified.bricks),
+        least_transmittance: 1.0 - ray_cast.early_termination,
+        skip_empty: u32::from(ray_cast.skip_empty),
+        lighting: lit.kind,
+        ambient: lit.ambient,
+        diffuse: lit.diffuse,
+        specular: lit.specular,
+        shininess: lit.shininess,
+        sentinel: SENTINEL_THRESHOLD,
+        reach: view.reach as f32,
+        g: lit.g,
+        emission: lit.emission,
+        first_sweep,
+        fluence_scale: summed.map_or(0.0, |summed| summed.scale),
+        peak_cap: Peak::new(f64::from(lit.g)).cap.min(f64::from(f32::MAX)) as f32,
+        greatest_colour,
+        greatest_extinction,
+    }
+}
+
+/// How a volume is lit where the picture is shaded so.
+pub fn lit(volume: &VolumeData, settings: &SceneSettings, shading: Shading) -> Lit {
+    let lighting = lighting_in_force(volume.lighting, volume.shading, settings);
+    let mut lit = Lit::of(&match shading {
+        Shading::Scattering => lighting,
+        Shading::Local => lighting.local(),
+    });
+    let is_scattering = [SCATTERS_ONCE, SCATTERS].contains(&lit.kind);
+    if is_scattering && volume.light_volumes.is_none_or(|own| own.0.is_empty()) {
+        // Nothing arrives where there is no light.
+        lit.kind = UNLIT;
+    }
+    lit.shares = volume.summed.is_some();
+    if lit.kind == SCATTERS && volume.eye_light.is_some() {
+        lit.kind = SCATTERS_TOWARDS_EYE;
+    }
+    lit
+}
+
+/// A lighting as the shader knows it.
+#[derive(Default)]
+pub(in crate::passes) struct Lit {
+    pub(in crate::passes) kind: u32,
+    ambient: f32,
+    diffuse: f32,
+    pub(in crate::passes) specular: f32,
+    shininess: f32,
+    pub(in crate::passes) g: f32,
+    emission: f32,
+    /// Whether there is light of lights that share a sum.
+    pub(in crate::passes) shares: bool,
+}
+
+impl Lit {
+    fn of(lighting: &VolumeLighting) -> Self {
+        match *lighting {
+            VolumeLighting::EmissionAbsorption => Self { kind: EMITS, ..Default::default() },
+            VolumeLighting::Gradient { ambient, diffuse, specular, shininess } => {
+                Self { kind: GRADIENT, ambient, diffuse, specular, shininess, ..Default::default() }
+            }
+            VolumeLighting::SingleScattering { g, .. } => {
+                Self { kind: SCATTERS_ONCE, g, ..Default::default() }
+            }
+            VolumeLighting::LightVolume { g, emission, gradient_specular, .. } => {
+                let shininess = GRADIENT_SHININESS;
+                Self {
+                    kind: SCATTERS,
+                    g,
+                    emission,
+                    specular: gradient_specular,
+                    shininess,
+                    ..Default::default()
+                }
+            }
+        }
+    }
+}
+
+/// Blinn's exponent of highlights in light volumes.
+const GRADIENT_SHININESS: f32 = 16.0;

@@ -1,0 +1,189 @@
+//! The ray caster's pipeline, and the modules of its shader that are made for what is in a scene.
+
+use super::FORMAT;
+use super::tables::BRICK_ROW;
+use crate::components::Classification;
+use crate::gpu::{Draw, DrawDescriptor, Filtering, Gpu, GpuError, binding};
+use crate::passes::light_volume::lookup;
+use crate::passes::lighting::Kinds;
+use crate::passes::{classification, volume_shadow};
+use crate::sources::BrickRanges;
+use crate::view::lights_module;
+use std::fmt::Write;
+
+/// What a pipeline is made for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant {
+    /// One for each volume.
+    pub filtering: Vec<Filtering>,
+    /// One for each volume.
+    pub classifications: Vec<Classification>,
+    pub light_capacity: usize,
+    /// How volumes are lit, which costs more than the rest together.
+    pub kinds: Kinds,
+    /// For each light volume of all volumes together whether meshes shadow it.
+    pub light_volumes: Vec<bool>,
+    /// What scattered light each volume has.
+    pub scattered: Vec<Scattered>,
+}
+
+/// Bindings of the shader in front of the volume textures.
+pub(crate) const FIXED_BINDINGS: usize = 7;
+
+/// Compiles the shader for a variant.
+pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
+    let fixed = [
+        binding::UNIFORM,
+        binding::UNIFORM,
+        binding::UNIFORM,
+        binding::TEXTURE,
+        binding::INTEGERS,
+        binding::TEXTURE,
+        binding::SAMPLER,
+    ];
+    let textures = variant
+        .filtering
+        .iter()
+        .map(|filtering| binding::texture(wgpu::TextureViewDimension::D3, *filtering == Filtering::Sampler));
+    let light_volumes = lookup::bindings(variant.light_volumes.len(), lookup::filtering(gpu));
+    let shadows = volume_shadow::bindings(&variant.light_volumes);
+    let scattered: usize = variant.scattered.iter().map(|scattered| scattered.textures()).sum();
+    let scattered = std::iter::repeat_n(binding::texture(wgpu::TextureViewDimension::D3, true), scattered);
+    let first = FIXED_BINDINGS + variant.filtering.len();
+    let first_shadow = first + light_volumes.len();
+    let first_classified = first_shadow + shadows.len();
+    let classified = classification::bindings(&variant.classifications);
+    let first_scattered = first_classified + classified.len();
+    let bindings: Vec<_> = fixed
+        .into_iter()
+        .chain(textures)
+        .chain(light_volumes)
+        .chain(shadows)
+        .chain(classified)
+        .chain(scattered)
+        .collect();
+    Draw::new(
+        gpu,
+        &DrawDescriptor {
+            name: "raycast",
+            generated: &[
+                ("volumes", volumes_module(&variant.filtering, FIXED_BINDINGS)),
+                variant.kinds.module(),
+                classifications_module(&variant.classifications, first_classified),
+                lights_module(variant.light_capacity),
+                lookup::light_volumes_module(variant.light_volumes.len(), lookup::filtering(gpu), first),
+                volume_shadow::module(&variant.light_volumes, first_shadow),
+                scattered_module(&variant.scattered, first_scattered),
+            ],
+            entry_points: ("cover", "march"),
+            bindings: &bindings,
+            vertex_buffers: &[],
+            format: FORMAT,
+            depth: false,
+        },
+    )
+}
+
+/// The WGSL module `classifications`, whose textures are bound behind all others.
+pub(crate) fn classifications_module(
+    classifications: &[Classification],
+    first_binding: usize,
+) -> (&'static str, String) {
+    ("classifications", classification::module(classifications, first_binding))
+}
+
+/// The WGSL module `volumes`: one texture binding a volume, and `texel_at(volume, place)` that interpolates in it.
+pub(crate) fn volumes_module(filtering: &[Filtering], first_binding: usize) -> String {
+    let brick = BrickRanges::BRICK;
+    let count = filtering.len();
+    let mut text =
+        format!("const VOLUMES = {count}u;\nconst BRICK_ROW = {BRICK_ROW}u;\nconst BRICK = {brick}.0;\n");
+    let mut cases = String::new();
+    for (index, filtering) in filtering.iter().enumerate() {
+        let binding = first_binding + index;
+        let value = match filtering {
+            Filtering::Sampler => format!("textureSampleLevel(volume_{index}, linear_sampler, place, 0.0).r"),
+            Filtering::Shader => {
+                text.push_str(&eight_loads(index));
+                format!("trilinear_{index}(place)")
+            }
+        };
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "@group(0) @binding({binding}) var volume_{index}: texture_3d<f32>;");
+        let label = if index == 0 { "default".into() } else { format!("case {index}u") };
+        let _ = writeln!(cases, "        {label}: {{ return {value}; }}");
+    }
+    let _ = write!(
+        text,
+        "fn texel_at(volume: u32, place: vec3f) -> f32 {{\n    switch volume {{\n{cases}    }}\n}}\n"
+    );
+    text
+}
+
+/// What is looked up of light that was scattered before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scattered {
+    /// Nothing.
+    Nothing,
+    /// Fluence.
+    Fluence,
+    /// Fluence, and light that goes on towards the eye.
+    TowardsEye,
+}
+
+impl Scattered {
+    /// How many of them there are.
+    pub fn textures(self) -> usize {
+        match self {
+            Self::Nothing => 0,
+            Self::Fluence => 1,
+            Self::TowardsEye => 2,
+        }
+    }
+}
+
+/// The WGSL module `scattered`: `fluence_at(volume, place)` and `eye_light_at`, of the volumes that have scattered light.
+pub(crate) fn scattered_module(scattered: &[Scattered], first: usize) -> (&'static str, String) {
+    let mut text = String::new();
+    let mut binding = first;
+    let mut cases = [String::new(), String::new()];
+    for (index, scattered) in scattered.iter().enumerate() {
+        for (name, cases) in ["fluence", "eye_light"].iter().zip(&mut cases).take(scattered.textures()) {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "@group(0) @binding({binding}) var {name}_{index}: texture_3d<f32>;");
+            let sample = format!("textureSampleLevel({name}_{index}, linear_sampler, place, 0.0).rgb");
+            let _ = writeln!(cases, "        case {index}u: {{ return {sample}; }}");
+            binding += 1;
+        }
+    }
+    for (name, cases) in ["fluence", "eye_light"].iter().zip(cases) {
+        let _ = write!(
+            text,
+            "fn {name}_at(volume: u32, place: vec3f) -> vec3f {{\n    switch volume {{\n{cases}        \
+             default: {{ return vec3f(0.0); }}\n    }}\n}}\n"
+        );
+    }
+    ("scattered", text)
+}
+
+/// Trilinear interpolation with eight loads, clamped at the border.
+fn eight_loads(index: usize) -> String {
+    format!(
+        "fn trilinear_{index}(place: vec3f) -> f32 {{
+    let last = vec3i(textureDimensions(volume_{index})) - 1;
+    let at = place * vec3f(textureDimensions(volume_{index})) - 0.5;
+    let low = vec3i(floor(at));
+    let part = at - floor(at);
+    var rows: array<f32, 4>;
+    for (var row = 0; row < 4; row += 1) {{
+        let y = low.y + (row & 1);
+        let z = low.z + (row >> 1u);
+        let a = textureLoad(volume_{index}, clamp(vec3i(low.x, y, z), vec3i(0), last), 0).r;
+        let b = textureLoad(volume_{index}, clamp(vec3i(low.x + 1, y, z), vec3i(0), last), 0).r;
+        rows[row] = mix(a, b, part.x);
+    }}
+    return mix(mix(rows[0], rows[1], part.y), mix(rows[2], rows[3], part.y), part.z);
+}}
+"
+    )
+}
