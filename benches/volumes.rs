@@ -31,8 +31,8 @@ const SHOWN: f64 = 2e-4;
 const REPETITIONS: usize = 3;
 
 /// The passes that make the light of a volume.
-const LIGHT_PASSES: [&str; 5] =
-    ["light_volume", "light_cells", "light_network", "scattered_light", "summed_light"];
+const LIGHT_PASSES: [&str; 6] =
+    ["light_volume", "light_cells", "light_network", "scattered_light", "summed_light", "eye_light"];
 
 /// A picture of the truth and what it shows.
 struct Subject {
@@ -98,6 +98,9 @@ fn lightings(g: f64, quick: bool, only: Option<&String>) -> Vec<String> {
         all.extend(
             resolutions.iter().map(|resolution| format!("{name}(g: {g:?}, resolution: {resolution:?})")),
         );
+    }
+    if g > 0.0 {
+        all.push(format!("LightVolume(g: {g:?}, towards_eye: true)"));
     }
     all
 }

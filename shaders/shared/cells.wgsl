@@ -96,8 +96,10 @@ fn exchanged(own: vec4f, across: vec2i, step: vec2i, face: u32, which: u32) -> v
     other = select(other, vec4f(0.0, 0.0, 0.0, own.a), is_outside);
     // Harmonic: light cannot leave a cell faster than it moves in it. The same for both, so that none is made or lost.
     let spread = 2.0 * own.a / (1.0 + own.a / max(other.a, 1e-30));
+    // In a far thinner medium nothing turns light back: it would be lost there, while what is seen goes straight on.
+    let ratio = min(own.a, other.a) / max(max(own.a, other.a), 1e-30);
     let length = select(sweep_of.across.y, sweep_of.across.x, step.x != 0);
-    return shares(spread / (length * length))[which] * (other.rgb - own.rgb);
+    return shares(ratio * spread / (length * length))[which] * (other.rgb - own.rgb);
 }
 
 // What has gone on from a slice, spread.
