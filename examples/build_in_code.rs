@@ -44,6 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             endian: Default::default(),
             spacing: Vec3::ONE,
             skip_bytes: 0,
+            interpolation: Default::default(),
         },
         TransferFunction {
             points: vec![

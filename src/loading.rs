@@ -1,10 +1,12 @@
 //! The files that components name, read into the world.
 
 use crate::Stage;
-use crate::components::{Auto, Mesh, Placement, Subsurface, Volume};
+use crate::components::{self, Auto, DataFrame, Mesh, Place, Placement, Subsurface, Volume};
 use crate::scene::{EntityProblems, Problem};
 use crate::sources::trail::{self, FileState, Trail};
-use crate::sources::{self, LayoutError, MeshData, MeshStatistics, RawLayout, SourceError, VolumeData};
+use crate::sources::{
+    self, LayoutError, MeshData, MeshStatistics, RawLayout, Selection, SourceError, Space, VolumeData,
+};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::component::Mutable;
 use bevy_ecs::prelude::*;
@@ -18,7 +20,9 @@ pub(crate) struct LoadingPlugin;
 impl Plugin for LoadingPlugin {
     fn build(&self, app: &mut App) {
         app.add_message::<FileChanged>();
-        app.add_systems(Update, (unload, load_meshes, load_volumes).chain().in_set(Stage::Load));
+        // What was read may lie elsewhere.
+        let systems = (unload, load_meshes, load_volumes, components::place).chain();
+        app.add_systems(Update, systems.in_set(Stage::Load));
     }
 }
 
@@ -224,8 +228,14 @@ fn load_volumes(
         let (read, files) = trail::follow(|| read_volume(volume));
         let problems = match read {
             Ok(data) => {
-                let problems = volume_notes(&data).map(|note| note.on(entity, "Volume")).collect();
-                commands.entity(entity).insert(LoadedVolume { data, has_samples: true });
+                let problems = notes_on(volume, &data).map(|note| note.on(entity, "Volume")).collect();
+                let frame = frame_of(volume, &data);
+                let mut entity = commands.entity(entity);
+                match frame {
+                    Some(frame) => entity.insert(frame),
+                    None => entity.remove::<DataFrame>(),
+                };
+                entity.insert(LoadedVolume { data, has_samples: true });
                 problems
             }
             // What was loaded last stays.
@@ -239,7 +249,32 @@ fn load_volumes(
     }
 }
 
-fn volume_notes(data: &VolumeData) -> impl Iterator<Item = Problem> {
+/// Where a volume lies whose component asks for the place that its file says.
+fn frame_of(volume: &Volume, data: &VolumeData) -> Option<DataFrame> {
+    let Volume::File { place: Place::Patient, .. } = volume else { return None };
+    let is_known = data.frame.space != Space::Unknown;
+    is_known.then(|| DataFrame::Millimetres(data.frame.world_from_box(data.size, data.spacing)))
+}
+
+/// What is left of a rotation, where the file's place is not asked for; and that there is none, where it is.
+fn note_on_place(volume: &Volume, data: &VolumeData) -> Option<String> {
+    let Volume::File { place, .. } = volume else { return None };
+    let degrees = data.frame.degrees_off();
+    match place {
+        Place::Patient if data.frame.space == Space::Unknown => {
+            Some("the file does not say where it lies; it is centred on the entity's origin".to_owned())
+        }
+        Place::Centred if degrees >= LEAST_TOLD_DEGREES => Some(format!(
+            "its axes are up to {degrees:.1}° off the world's; it is drawn upright (`place: Patient` draws it as it lies)"
+        )),
+        _ => None,
+    }
+}
+
+/// The least rotation, in degrees, that is told of.
+const LEAST_TOLD_DEGREES: f64 = 0.05;
+
+fn notes_on(volume: &Volume, data: &VolumeData) -> impl Iterator<Item = Problem> {
     let unfit = (data.non_finite > 0).then(|| {
         format!(
             "{} of {} samples are not finite; they are drawn as transparent",
@@ -247,14 +282,14 @@ fn volume_notes(data: &VolumeData) -> impl Iterator<Item = Problem> {
             data.samples.len()
         )
     });
-    data.notes.iter().cloned().chain(unfit).map(Problem::note)
+    data.notes.iter().cloned().chain(note_on_place(volume, data)).chain(unfit).map(Problem::note)
 }
 
 /// The field of a [`Volume`] that an error is about.
 fn field_at_fault(volume: &Volume, error: &SourceError) -> &'static str {
     match error {
-        // The path of a file that says everything itself.
-        _ if matches!(volume, Volume::File(_)) => "Volume.0",
+        // A file says everything else itself.
+        _ if matches!(volume, Volume::File { .. }) => "Volume.path",
         SourceError::Layout { problem: LayoutError::Spacing { .. }, .. } => "Volume.spacing",
         SourceError::Layout { problem: LayoutError::Skip { .. }, .. } => "Volume.skip_bytes",
         SourceError::Layout { .. } | SourceError::Length { .. } => "Volume.size",
@@ -269,12 +304,12 @@ fn unload(
     mut volumes: RemovedComponents<Volume>,
 ) {
     for entity in meshes.read() {
-        commands.entity(entity).try_remove::<(LoadedMesh, ReadFor<Mesh>)>();
+        commands.entity(entity).try_remove::<(LoadedMesh, ReadFor<Mesh>, DataFrame)>();
         FilesRead::set(&mut commands, entity, "Mesh", Trail::new());
         EntityProblems::set(&mut commands, entity, "load_meshes", Vec::new());
     }
     for entity in volumes.read() {
-        commands.entity(entity).try_remove::<(LoadedVolume, ReadFor<Volume>)>();
+        commands.entity(entity).try_remove::<(LoadedVolume, ReadFor<Volume>, DataFrame)>();
         FilesRead::set(&mut commands, entity, "Volume", Trail::new());
         EntityProblems::set(&mut commands, entity, "load_volumes", Vec::new());
     }
@@ -282,8 +317,15 @@ fn unload(
 
 fn read_volume(volume: &Volume) -> Result<VolumeData, SourceError> {
     let (path, size, format, endian, spacing, skip_bytes) = match volume {
-        Volume::File(path) => return sources::read_volume(path.path()),
-        Volume::Raw { path, size, format, endian, spacing, skip_bytes } => {
+        Volume::File { path, index, component, series, .. } => {
+            let component = match component {
+                Auto::Auto => None,
+                Auto::Value(component) => Some(*component),
+            };
+            let selection = Selection { index: *index, component, series: series.clone() };
+            return sources::read_volume(path.path(), &selection);
+        }
+        Volume::Raw { path, size, format, endian, spacing, skip_bytes, .. } => {
             (path, size, format, endian, spacing, skip_bytes)
         }
     };

@@ -344,6 +344,7 @@ fn what_is_left_out_has_its_default() {
                 endian: Endian::Little,
                 spacing: Vec3::ONE,
                 skip_bytes: 3,
+                interpolation: Default::default(),
             },
             r#"Raw(path: "a.raw", size: (1, 1, 1), skip_bytes: 3)"#,
         ),

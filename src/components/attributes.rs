@@ -77,6 +77,10 @@ pub(crate) fn in_ron(numbers: &[f32]) -> String {
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 pub struct Unit(pub &'static str);
 
+/// Marks the first field of an enum's variant as one that may stand without its name: `File("head.nii", place: Patient)`.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+pub struct Leading;
+
 /// Marks a field of an enum variant that has no default and must be written.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 pub struct Required;

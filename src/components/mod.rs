@@ -25,7 +25,7 @@ mod volume;
 mod volume_lighting;
 
 pub use asset_path::AssetPath;
-pub use attributes::{NameOf, Names, Range, ReflectValidate, Required, Unit, Untagged, Validate};
+pub use attributes::{Leading, NameOf, Names, Range, ReflectValidate, Required, Unit, Untagged, Validate};
 pub use auto::Auto;
 pub use directional_light::DirectionalLight;
 pub use mesh::Mesh;
@@ -40,9 +40,9 @@ pub use shading::Shading;
 pub use subsurface::{DipoleModel, Material, Specular, Subsurface};
 pub use transfer_function::{Classification, ControlPoint, IsoValue, TransferFunction};
 pub(crate) use transform::place;
-pub use transform::{Motion, Placement, Scale, Transform};
+pub use transform::{DataFrame, Motion, Placement, Scale, Transform};
 pub use view_camera::{Projection, ViewCamera};
-pub use volume::{Endian, SampleFormat, Volume};
+pub use volume::{Endian, Interpolation, Place, SampleFormat, Volume};
 pub use volume_lighting::VolumeLighting;
 
 use bevy_app::App;

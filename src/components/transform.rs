@@ -1,5 +1,6 @@
 //! Where an entity is: as written, as moved by animation, and the product of the two.
 
+use super::SceneSettings;
 use super::attributes::{ReflectValidate, Untagged, Validate, in_ron};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -90,20 +91,53 @@ impl Scale {
 #[require(Placement)]
 pub struct Motion(pub DAffine3);
 
-/// Where the entity is now: its [`Motion`] after its [`Transform`]. Derived in [`Stage::Place`](crate::Stage::Place); read it, never
+/// Where the data that were loaded for an entity lie in its own space, if not about its origin: a volume in its patient, a mesh far away
+/// from the origin of its coordinates. Written while files are read.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+pub enum DataFrame {
+    /// Takes the data's space to the entity's, both in scene units.
+    SceneUnits(DAffine3),
+    /// The same with a translation in millimetres.
+    Millimetres(DAffine3),
+}
+
+impl DataFrame {
+    /// The matrix that takes the data's space to the entity's, in scene units.
+    pub fn entity_from_data(&self, millimetres_per_unit: f32) -> DAffine3 {
+        match *self {
+            Self::SceneUnits(affine) => affine,
+            Self::Millimetres(affine) => {
+                DAffine3 { translation: affine.translation / f64::from(millimetres_per_unit), ..affine }
+            }
+        }
+    }
+}
+
+/// Where the entity's data are now: its [`Motion`] after its [`Transform`] after its [`DataFrame`]. Derived in [`Stage::Place`](crate::Stage::Place); read it, never
 /// write it.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
 pub struct Placement(pub DAffine3);
 
 /// Derives [`Placement`], and wakes nothing where the result is the same.
 pub(crate) fn place(
-    mut entities: Query<(Option<&Transform>, Option<&Motion>, &mut Placement)>,
-    changed: Query<Entity, (With<Placement>, Or<(Changed<Transform>, Changed<Motion>)>)>,
-    (mut no_transform, mut no_motion): (RemovedComponents<Transform>, RemovedComponents<Motion>),
+    mut entities: Query<(Option<&Transform>, Option<&Motion>, Option<&DataFrame>, &mut Placement)>,
+    changed: Query<Entity, (With<Placement>, Or<(Changed<Transform>, Changed<Motion>, Changed<DataFrame>)>)>,
+    framed: Query<Entity, With<DataFrame>>,
+    settings: Res<SceneSettings>,
+    (mut no_transform, mut no_motion, mut no_frame): (
+        RemovedComponents<Transform>,
+        RemovedComponents<Motion>,
+        RemovedComponents<DataFrame>,
+    ),
 ) {
-    for entity in changed.iter().chain(no_transform.read()).chain(no_motion.read()) {
-        let Ok((transform, motion, mut placement)) = entities.get_mut(entity) else { continue };
+    let rescaled = framed.iter().filter(|_| settings.is_changed());
+    let removed = no_transform.read().chain(no_motion.read()).chain(no_frame.read());
+    for entity in changed.iter().chain(rescaled).chain(removed) {
+        let Ok((transform, motion, frame, mut placement)) = entities.get_mut(entity) else { continue };
         let still = transform.map_or(DAffine3::IDENTITY, Transform::scene_from_entity);
-        placement.set_if_neq(Placement(motion.map_or(DAffine3::IDENTITY, |motion| motion.0) * still));
+        let own =
+            frame.map_or(DAffine3::IDENTITY, |frame| frame.entity_from_data(settings.millimetres_per_unit));
+        let moved = motion.map_or(DAffine3::IDENTITY, |motion| motion.0);
+        placement.set_if_neq(Placement(moved * still * own));
     }
 }

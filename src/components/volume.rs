@@ -1,5 +1,6 @@
 use super::{
-    AssetPath, Placement, Range, RayCast, Required, TransferFunction, Transform, Unit, VolumeLighting,
+    AssetPath, Auto, Leading, Placement, Range, RayCast, Required, TransferFunction, Transform, Unit,
+    VolumeLighting,
 };
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -20,20 +21,31 @@ pub use crate::sources::{Endian, SampleFormat};
 /// wider or scaled integers become the first of `U8`, `I8`, `U16`, `I16` that holds every value exactly, or else `F32`; scaled and
 /// 64-bit floats become `F32`.
 ///
+/// | field of `File` | type | unit | range | default |
+/// |---|---|---|---|---|
+/// | `path` | file or folder; may stand without its name | – | – | – |
+/// | `place` | `Centred` on the entity's origin, or `Patient`: where the file says, so that a mask lies on its scan | – | – | `Centred` |
+/// | `index` | entry along a fourth axis, such as a time point | – | below their number | 0 |
+/// | `component` | `Auto` (all of a colour, else the first), or one of the numbers that each sample consists of | – | below their number | `Auto` |
+/// | `series` | of a DICOM folder: `SeriesInstanceUID`, number or description | – | – | the largest |
+/// | `interpolation` | `Auto`, `Linear` or `Nearest` | – | – | `Auto`: `Nearest` for label maps |
+///
 /// | field of `Raw` | type | unit | range | default |
 /// |---|---|---|---|---|
 /// | `path` | file; a name that ends in `.gz` is unpacked | – | – | – |
 /// | `size` | voxels along x, y, z; x varies fastest in the file | voxels | at least 1 | – |
-/// | `format` | `U8`, `I8`, `U16`, `I16` or `F32` | – | – | `U8` |
+/// | `format` | `U8`, `I8`, `U16`, `I16`, `F32` or `Rgba8` | – | – | `U8` |
 /// | `endian` | `Little` or `Big` | – | – | `Little` |
 /// | `spacing` | distance of voxel centres | mm | above 0 | (1, 1, 1) |
 /// | `skip_bytes` | length of a header in front of the samples | bytes | – | 0 |
+/// | `interpolation` | as above | – | – | `Auto` |
 ///
 /// A voxel is a cell around its sample, so the volume is `size * spacing` millimetres long. Between samples the field is trilinear;
 /// in the half voxel at the border it is constant. Samples that are not finite are counted, reported and drawn as transparent.
 ///
 /// ```ron
 /// Volume: File("head.nii.gz")
+/// Volume: File("mask.nii.gz", place: Patient, interpolation: Nearest)
 /// Volume: Raw(path: "../assets/bonsai.raw", size: (256, 256, 256), format: U8, spacing: (0.08, 0.08, 0.08))
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
@@ -41,7 +53,26 @@ pub use crate::sources::{Endian, SampleFormat};
 #[require(Transform, Placement, TransferFunction, VolumeLighting, RayCast)]
 pub enum Volume {
     /// Read from a file, or a folder of DICOM slices, that says itself what it holds.
-    File(AssetPath),
+    File {
+        /// The file or folder.
+        #[reflect(@Leading, @Required)]
+        path: AssetPath,
+        /// Where it lies.
+        #[reflect(default)]
+        place: Place,
+        /// The entry along a fourth axis, such as a time point, counted from 0.
+        #[reflect(default)]
+        index: u32,
+        /// The component of samples that consist of several numbers, counted from 0.
+        #[reflect(default)]
+        component: Auto<u32>,
+        /// The series of a DICOM folder.
+        #[reflect(default)]
+        series: Option<String>,
+        /// What lies between samples.
+        #[reflect(default)]
+        interpolation: Interpolation,
+    },
     /// Bare samples, as they stand in memory.
     Raw {
         /// The file.
@@ -62,7 +93,56 @@ pub enum Volume {
         /// Length of the header.
         #[reflect(default, @Unit("bytes"))]
         skip_bytes: u64,
+        /// What lies between samples.
+        #[reflect(default)]
+        interpolation: Interpolation,
     },
+}
+
+/// Where a volume that a file describes lies.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Default, PartialEq)]
+pub enum Place {
+    /// Upright, the middle of its box on the entity's origin.
+    #[default]
+    Centred,
+    /// Where the file says that it lies, in the patient or another world that files share: origin and directions hold, oblique ones
+    /// exactly, in millimetres from the entity's origin.
+    Patient,
+}
+
+/// What lies between the samples of a volume.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Default, PartialEq)]
+pub enum Interpolation {
+    /// `Nearest` for label maps, else `Linear`.
+    #[default]
+    Auto,
+    /// A mix of the eight samples around, by distance.
+    Linear,
+    /// The value of the nearest sample: for values that name something and cannot be mixed.
+    Nearest,
+}
+
+impl Volume {
+    /// A file that says itself what it holds, with everything else left to it.
+    pub fn file(path: impl Into<std::path::PathBuf>) -> Self {
+        Self::File {
+            path: AssetPath::new(path),
+            place: Place::default(),
+            index: 0,
+            component: Auto::Auto,
+            series: None,
+            interpolation: Interpolation::default(),
+        }
+    }
+
+    /// What lies between the samples, as written.
+    pub fn interpolation(&self) -> Interpolation {
+        match self {
+            Self::File { interpolation, .. } | Self::Raw { interpolation, .. } => *interpolation,
+        }
+    }
 }
 
 impl Default for Volume {
@@ -74,6 +154,7 @@ impl Default for Volume {
             endian: Endian::default(),
             spacing: one_millimetre(),
             skip_bytes: 0,
+            interpolation: Interpolation::default(),
         }
     }
 }

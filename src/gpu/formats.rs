@@ -37,8 +37,14 @@ impl Filtering {
 impl VolumeFormat {
     /// The format that each type of sample gets on this adapter, by name.
     pub fn all(gpu: &Gpu) -> std::collections::BTreeMap<String, String> {
-        let kinds =
-            [SampleFormat::U8, SampleFormat::I8, SampleFormat::U16, SampleFormat::I16, SampleFormat::F32];
+        let kinds = [
+            SampleFormat::U8,
+            SampleFormat::I8,
+            SampleFormat::U16,
+            SampleFormat::I16,
+            SampleFormat::F32,
+            SampleFormat::Rgba8,
+        ];
         let describe =
             |format: Self| format!("{:?}, filtered by the {}", format.texture, format.filtering.who());
         kinds.into_iter().map(|kind| (format!("{kind:?}"), describe(Self::choose(gpu, kind)))).collect()
@@ -52,7 +58,7 @@ impl VolumeFormat {
     pub fn choose(gpu: &Gpu, samples: SampleFormat) -> Self {
         use wgpu::TextureFormat as Format;
         let (low, steps) = match samples {
-            SampleFormat::U8 => (0.0, 255.0),
+            SampleFormat::U8 | SampleFormat::Rgba8 => (0.0, 255.0),
             SampleFormat::I8 => (-128.0, 255.0),
             SampleFormat::U16 => (0.0, 65535.0),
             SampleFormat::I16 => (-32768.0, 65535.0),
@@ -61,8 +67,10 @@ impl VolumeFormat {
         let exact = |texture| Self { texture, filtering: Filtering::Sampler, scale: 1.0, offset: 0.0 };
         let normalised = |texture| Self { texture, filtering: Filtering::Sampler, scale: steps, offset: low };
         match samples {
-            SampleFormat::U8 | SampleFormat::I8 if gpu.is_software() => exact(Format::R16Float),
-            SampleFormat::U8 | SampleFormat::I8 => normalised(Format::R8Unorm),
+            SampleFormat::U8 | SampleFormat::I8 | SampleFormat::Rgba8 if gpu.is_software() => {
+                exact(Format::R16Float)
+            }
+            SampleFormat::U8 | SampleFormat::I8 | SampleFormat::Rgba8 => normalised(Format::R8Unorm),
             SampleFormat::U16 | SampleFormat::I16 if gpu.has(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM) => {
                 normalised(Format::R16Unorm)
             }

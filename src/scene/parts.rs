@@ -34,6 +34,8 @@ pub(super) enum Payload<'a> {
     Unit,
     Values(Vec<Part<'a>>),
     Fields(Vec<Named<'a>>),
+    /// A value without a name in front of fields with names.
+    Led(Part<'a>, Vec<Named<'a>>),
 }
 
 /// The shape that a variant's payload is read in.
@@ -42,6 +44,8 @@ pub(super) enum Shape {
     Unit,
     Tuple(usize),
     Struct,
+    /// A struct whose first field may stand without its name.
+    LedStruct,
 }
 
 /// A place at which the text is not what RON, or the shape asked for, wants.
@@ -213,12 +217,55 @@ impl<'a> Part<'a> {
 
     /// What stands behind the name of a variant, read in the shape that the variant has.
     pub fn payload(&self, shape: Shape) -> Result<Payload<'a>, Misfit> {
+        if let Shape::LedStruct = shape
+            && let Some((first, fields)) = self.led()
+        {
+            return Ok(Payload::Led(first, fields));
+        }
         let payload = self.parse(|ron| ron.deserialize_enum("", &[], PayloadVisitor(shape)))?;
         Ok(match payload {
             RawPayload::Unit => Payload::Unit,
             RawPayload::Values(values) => Payload::Values(self.subs(values)),
             RawPayload::Fields(fields) => Payload::Fields(self.named(fields)),
         })
+    }
+
+    /// The parts of `Variant(value, name: value, …)`, which RON itself does not know; none where the first value has a name as well, or
+    /// the text is otherwise not of this form.
+    fn led(&self) -> Option<(Part<'a>, Vec<Named<'a>>)> {
+        let text = |token: &Range<usize>| &self.text[token.clone()];
+        let mut tokens = tokens(self.text);
+        tokens.next().filter(|_| self.word().is_some())?;
+        tokens.next().filter(|token| text(token) == "(")?;
+        let (mut items, mut item, mut depth) = (Vec::new(), Vec::new(), 0_usize);
+        loop {
+            let token = tokens.next()?;
+            match text(&token) {
+                ")" if depth == 0 => break,
+                "," if depth == 0 => {
+                    items.push(std::mem::take(&mut item));
+                    continue;
+                }
+                "(" | "[" | "{" => depth += 1,
+                ")" | "]" | "}" => depth = depth.checked_sub(1)?,
+                _ => {}
+            }
+            item.push(token);
+        }
+        // A comma behind the last item ends it.
+        if !item.is_empty() {
+            items.push(item);
+        }
+        let is_named = |item: &Vec<Range<usize>>| item.get(1).is_some_and(|second| text(second) == ":");
+        if tokens.next().is_some() || items.iter().any(Vec::is_empty) || is_named(items.first()?) {
+            return None;
+        }
+        let part =
+            |tokens: &[Range<usize>]| Some(self.sub(&self.text[tokens.first()?.start..tokens.last()?.end]));
+        let named = |item: &Vec<Range<usize>>| {
+            is_named(item).then_some(Named { name: part(&item[..1])?, value: part(&item[2..])? })
+        };
+        Some((part(&items[0])?, items[1..].iter().map(named).collect::<Option<_>>()?))
     }
 
     fn subs(&self, values: Vec<&'a str>) -> Vec<Part<'a>> {
@@ -403,7 +450,9 @@ impl<'de> Visitor<'de> for PayloadVisitor {
                 rest.newtype_variant::<&RawValue>().map(|value| RawPayload::Values(vec![value.get_ron()]))
             }
             Shape::Tuple(length) => rest.tuple_variant(length, ValuesVisitor).map(RawPayload::Values),
-            Shape::Struct => rest.struct_variant(&[], FieldsVisitor).map(RawPayload::Fields),
+            Shape::Struct | Shape::LedStruct => {
+                rest.struct_variant(&[], FieldsVisitor).map(RawPayload::Fields)
+            }
         }
     }
 }
@@ -419,6 +468,30 @@ mod tests {
         let values: Vec<_> =
             fields.iter().map(|field| (field.name.text, &text[field.value.bytes()])).collect();
         assert_eq!(values, [("a", "1.5"), ("b", "(2, 3)")]);
+    }
+
+    #[test]
+    fn a_first_value_may_stand_without_its_name() {
+        let led = |text: &'static str| {
+            let (first, fields) = Part::whole(text).led()?;
+            let fields: Vec<_> = fields.iter().map(|field| (field.name.text, field.value.text)).collect();
+            Some((first.text, fields))
+        };
+        assert_eq!(led("File(\"a, (b).nii\")"), Some(("\"a, (b).nii\"", vec![])));
+        assert_eq!(led("File(/* x */ \"a\", place: Patient, size: (1, [2]), // y\n)"), {
+            Some(("\"a\"", vec![("place", "Patient"), ("size", "(1, [2])")]))
+        });
+        for other in [
+            "File",
+            "File()",
+            "File(path: \"a\")",
+            "File(\"a\", Patient)",
+            "File(\"a\",, b: 1)",
+            "(1)",
+            "File(\"a\")x",
+        ] {
+            assert_eq!(led(other), None, "{other}");
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::layout::{Cursor, Item, Style, Written, insert, remove};
 use super::parts::{Named, Part, Payload, Shape};
 use super::path::is_option;
+use super::wanted::is_led;
 use super::write::{WriteError, Writer, equal};
 use crate::components::Untagged;
 use bevy_reflect::enums::{Enum, EnumInfo, VariantInfo};
@@ -103,7 +104,7 @@ impl<'r> Patcher<'r> {
             (TypeInfo::Struct(info), ReflectRef::Struct(old), ReflectRef::Struct(new)) => {
                 let Ok(written) = part.fields() else { return Ok(None) };
                 let known = info.iter().map(|known| known.name());
-                self.fields(part, &written, known, |name| Some((old.field(name)?, new.field(name)?)))
+                self.fields(part, None, &written, known, |name| Some((old.field(name)?, new.field(name)?)))
                     .map(Some)
             }
             (_, ReflectRef::TupleStruct(old), ReflectRef::TupleStruct(new)) => {
@@ -141,17 +142,23 @@ impl<'r> Patcher<'r> {
     fn fields<'n, 'v>(
         &self,
         part: &Part,
+        led: Option<Part>,
         written: &[Named],
         known: impl Iterator<Item = &'n str>,
         pair: impl Fn(&str) -> Option<(&'v dyn PartialReflect, &'v dyn PartialReflect)>,
     ) -> Patched {
         let (mut splices, mut changes) = (Vec::new(), Vec::new());
-        for name in known {
+        let items = written.len() + usize::from(led.is_some());
+        for (index, name) in known.enumerate() {
             let Some((old, new)) = pair(name) else { continue };
+            if let Some(first) = led.filter(|_| index == 0) {
+                splices.push((first.bytes(), self.value(&first, old, new)?));
+                continue;
+            }
             match written.iter().find(|written| written.name.text == name) {
                 Some(Named { value, .. }) => splices.push((value.bytes(), self.value(value, old, new)?)),
                 None if equal(old, new, self.writer.registry) => {}
-                None => changes.push(Change::Insert(written.len() + changes.len(), self.item(name, new)?)),
+                None => changes.push(Change::Insert(items + changes.len(), self.item(name, new)?)),
             }
         }
         Ok(self.group(part, splices, changes))
@@ -230,14 +237,17 @@ impl<'r> Patcher<'r> {
             return Ok(Some(self.group(part, vec![(held.bytes(), text)], Vec::new())));
         }
         match info.variant(old.variant_name()) {
-            Some(VariantInfo::Struct(variant)) => match part.payload(Shape::Struct) {
-                Ok(Payload::Fields(written)) => {
-                    let known = variant.iter().map(|known| known.name());
-                    self.fields(part, &written, known, |name| Some((old.field(name)?, new.field(name)?)))
-                        .map(Some)
-                }
-                _ => Ok(None),
-            },
+            Some(VariantInfo::Struct(variant)) => {
+                let shape = if is_led(variant) { Shape::LedStruct } else { Shape::Struct };
+                let (led, written) = match part.payload(shape) {
+                    Ok(Payload::Fields(written)) => (None, written),
+                    Ok(Payload::Led(first, written)) => (Some(first), written),
+                    _ => return Ok(None),
+                };
+                let known = variant.iter().map(|known| known.name());
+                let pair = |name: &str| Some((old.field(name)?, new.field(name)?));
+                self.fields(part, led, &written, known, pair).map(Some)
+            }
             Some(VariantInfo::Tuple(variant)) => match part.payload(Shape::Tuple(variant.field_len())) {
                 Ok(Payload::Values(parts)) => {
                     let pairs = old.iter_fields().map(|field| field.value());

@@ -3,7 +3,7 @@
 use super::names::{nearest, suggestion};
 use super::parts::{Misfit, Named, Part, Payload, Shape};
 use super::problem::{Place, Problem, SourceFile};
-use super::wanted::{excerpt, how_to_write, is_plain, numbers, wanted};
+use super::wanted::{excerpt, how_to_write, is_led, is_plain, numbers, wanted};
 use crate::components::{AssetPath, Names, Range, ReflectValidate, Required, Untagged};
 use bevy_reflect::attributes::CustomAttributes;
 use bevy_reflect::enums::{DynamicEnum, DynamicVariant, EnumInfo, VariantInfo};
@@ -132,6 +132,7 @@ impl<'r> Reader<'r> {
                 let known: Vec<_> = info.iter().collect();
                 let read = self.fields(
                     part,
+                    None,
                     fields,
                     &known,
                     registration.type_info().type_path_table().short_path(),
@@ -218,15 +219,21 @@ impl<'r> Reader<'r> {
         Some(value)
     }
 
+    /// Fields by their names; `led` is the first of them, if it stands in front without its name.
     fn fields(
         &mut self,
         whole: &Part,
+        led: Option<Part>,
         written: Vec<Named>,
         known: &[&NamedField],
         owner: &str,
     ) -> DynamicStruct {
         let mut read = DynamicStruct::default();
         let mut seen: Vec<(&str, Place)> = Vec::new();
+        if let (Some(value), Some(field)) = (led, known.first()) {
+            seen.push((field.name(), self.place(&value)));
+            self.field(&mut read, field, &value);
+        }
         for Named { name, value } in &written {
             let Some(field) = known.iter().find(|field| field.name() == name.text) else {
                 let names: Vec<_> = known.iter().map(|field| field.name()).collect();
@@ -245,11 +252,7 @@ impl<'r> Reader<'r> {
                 continue;
             }
             seen.push((field.name(), self.place(name)));
-            if let Some(value) = self.within(&format!(".{}", field.name()), |reader| {
-                reader.typed(value, field.type_id(), Allowed::by(field.custom_attributes()))
-            }) {
-                read.insert_boxed(field.name(), value);
-            }
+            self.field(&mut read, field, value);
         }
         for field in known.iter().filter(|field| field.has_attribute::<Required>()) {
             if !seen.iter().any(|(name, _)| *name == field.name()) {
@@ -260,6 +263,14 @@ impl<'r> Reader<'r> {
             }
         }
         read
+    }
+
+    fn field(&mut self, read: &mut DynamicStruct, field: &NamedField, value: &Part) {
+        if let Some(value) = self.within(&format!(".{}", field.name()), |reader| {
+            reader.typed(value, field.type_id(), Allowed::by(field.custom_attributes()))
+        }) {
+            read.insert_boxed(field.name(), value);
+        }
     }
 
     fn tuple(&mut self, part: &Part, types: &[(TypeId, Allowed)]) -> Option<Vec<Box<dyn PartialReflect>>> {
@@ -338,13 +349,14 @@ impl<'r> Reader<'r> {
         let shape = match variant {
             VariantInfo::Unit(_) => Shape::Unit,
             VariantInfo::Tuple(info) => Shape::Tuple(info.field_len()),
+            VariantInfo::Struct(info) if is_led(info) => Shape::LedStruct,
             VariantInfo::Struct(_) => Shape::Struct,
         };
         let how = how_to_write(variant);
         let bare = word.is_some_and(|word| word.text.len() == part.text.len());
         let payload = match shape {
             // A bare name stands for all defaults.
-            Shape::Struct if bare => Payload::Fields(Vec::new()),
+            Shape::Struct | Shape::LedStruct if bare => Payload::Fields(Vec::new()),
             Shape::Tuple(_) if bare => {
                 self.report(part, Problem::error(format!("expected {how}, found `{}`", part.text)));
                 return None;
@@ -354,7 +366,11 @@ impl<'r> Reader<'r> {
         let variant_value = match (variant, payload) {
             (VariantInfo::Struct(info), Payload::Fields(fields)) => {
                 let known: Vec<_> = info.iter().collect();
-                DynamicVariant::Struct(self.fields(part, fields, &known, variant.name()))
+                DynamicVariant::Struct(self.fields(part, None, fields, &known, variant.name()))
+            }
+            (VariantInfo::Struct(info), Payload::Led(first, fields)) => {
+                let known: Vec<_> = info.iter().collect();
+                DynamicVariant::Struct(self.fields(part, Some(first), fields, &known, variant.name()))
             }
             (VariantInfo::Tuple(info), Payload::Values(parts)) => {
                 let mut tuple = DynamicTuple::default();

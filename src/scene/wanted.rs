@@ -1,14 +1,21 @@
 //! What a value should look like, and what was found in its stead, in words.
 
-use bevy_reflect::enums::VariantInfo;
+use crate::components::Leading;
+use bevy_reflect::enums::{StructVariantInfo, VariantInfo};
 use bevy_reflect::{PartialReflect, TypeRegistration};
 
 pub(super) fn how_to_write(variant: &VariantInfo) -> String {
     match variant {
         VariantInfo::Unit(info) => format!("`{}`", info.name()),
         VariantInfo::Tuple(info) => format!("`{}({})`", info.name(), vec!["…"; info.field_len()].join(", ")),
+        VariantInfo::Struct(info) if is_led(info) => format!("`{}(…)`", info.name()),
         VariantInfo::Struct(info) => format!("`{}(field: value, …)`", info.name()),
     }
+}
+
+/// Whether the first field of a variant may stand without its name.
+pub(super) fn is_led(variant: &StructVariantInfo) -> bool {
+    variant.iter().next().is_some_and(|field| field.has_attribute::<Leading>())
 }
 
 /// What a leaf of this type looks like.

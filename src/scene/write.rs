@@ -2,7 +2,7 @@
 
 use super::layout::{Item, Written};
 use super::path::{is_option, same};
-use crate::components::{AssetPath, Required, Untagged};
+use crate::components::{AssetPath, Leading, Required, Untagged};
 use bevy_reflect::enums::{DynamicEnum, DynamicVariant, Enum, EnumInfo, VariantInfo};
 use bevy_reflect::serde::TypedReflectSerializer;
 use bevy_reflect::structs::DynamicStruct;
@@ -138,7 +138,8 @@ impl<'r> Writer<'r> {
             if !is_required && default(name).is_some_and(|default| same(default, value)) {
                 continue;
             }
-            items.push(Item { name: Some(name.to_owned()), value: self.value(value)? });
+            let leads = items.is_empty() && known[0].name() == name && known[0].has_attribute::<Leading>();
+            items.push(Item { name: (!leads).then(|| name.to_owned()), value: self.value(value)? });
         }
         Ok(Written::Group { open: open.into(), items, close: ')', spaced: false })
     }

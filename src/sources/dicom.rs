@@ -17,7 +17,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{SourceError, VolumeData, file, trail};
+use super::{Selection, SourceError, VolumeData, file, trail};
 use header::Header;
 
 /// Entries of a folder that are looked at.
@@ -38,7 +38,7 @@ pub(super) fn is_dicom(head: &[u8], is_named_so: bool) -> bool {
 /// # Errors
 ///
 /// If the file is broken, its frames are compressed by JPEG or are no images of one number a pixel.
-pub(super) fn read_file(path: &Path) -> Result<VolumeData, SourceError> {
+pub(super) fn read_file(path: &Path, _selection: &Selection) -> Result<VolumeData, SourceError> {
     let header = Header::read(path)?;
     series::assemble(path, &[(path.to_owned(), header)], Vec::new())
 }
@@ -48,7 +48,7 @@ pub(super) fn read_file(path: &Path) -> Result<VolumeData, SourceError> {
 /// # Errors
 ///
 /// If there is no slice in it, or the largest series cannot be read.
-pub(super) fn read_folder(path: &Path) -> Result<VolumeData, SourceError> {
+pub(super) fn read_folder(path: &Path, _selection: &Selection) -> Result<VolumeData, SourceError> {
     let io_error = |cause| file::io_error(path, cause);
     trail::note(path);
     let mut entries: Vec<PathBuf> = Vec::new();

@@ -2,7 +2,7 @@
 //!
 //! A file that says how its axes lie in a patient is turned so that +x points right, +y anterior and +z superior, whichever
 //! way its format counts; any other so that its axes run along its own world's +x, +y and +z. Only whole axes are exchanged
-//! and reversed: no sample is interpolated. What is left of a rotation is told in a note.
+//! and reversed: no sample is interpolated. What is left of a rotation is in the volume's [`Frame`].
 
 use std::path::Path;
 
@@ -11,11 +11,8 @@ use glam::{DVec3, Vec3};
 use super::{
     LayoutError, SourceError,
     stored::{Scaling, Stored},
-    volume::{MAX_VOLUME_BYTES, Samples, VolumeData, check_spacing, checked_bytes},
+    volume::{Frame, MAX_VOLUME_BYTES, Samples, Space, VolumeData, check_spacing, checked_bytes},
 };
-
-/// Axes closer to the world's than this are along them: the cosine of a twentieth of a degree.
-const ALONG: f64 = 0.999_999_6;
 
 /// Directions whose volume, at unit length, is less than this span no space.
 const FLAT: f64 = 1e-3;
@@ -29,6 +26,8 @@ pub(super) struct Grid {
     axes: [DVec3; 3],
     /// Whether that world is right, anterior, superior.
     anatomical: bool,
+    /// The centre of the first voxel of the file, mm, and what that means; where the file says so.
+    place: Option<(DVec3, Space)>,
 }
 
 impl Grid {
@@ -58,7 +57,7 @@ impl Grid {
         let spacing = DVec3::new(given(0), given(1), given(2)).as_vec3();
         check_spacing(spacing).map_err(layout)?;
         checked_bytes(size, bytes).map_err(layout)?;
-        let grid = Self { size, axes: completed(axes), anatomical };
+        let grid = Self { size, axes: completed(axes), anatomical, place: None };
         let [x, y, z] = grid.axes.map(DVec3::normalize);
         let spanned = x.cross(y).dot(z).abs();
         if spanned.is_nan() || spanned <= FLAT {
@@ -69,6 +68,22 @@ impl Grid {
             });
         }
         Ok(grid)
+    }
+
+    /// The same with the centre of the first voxel of the file at `origin`, mm. Without this call the file does not say where it lies.
+    ///
+    /// # Errors
+    ///
+    /// If the origin is not finite.
+    pub fn at(self, path: &Path, origin: DVec3, space: Space) -> Result<Self, SourceError> {
+        if origin.is_finite() {
+            return Ok(Self { place: Some((origin, space)), ..self });
+        }
+        Err(SourceError::Field {
+            path: path.to_owned(),
+            field: "origin".to_owned(),
+            problem: format!("{origin} is not finite; correct the header"),
+        })
     }
 
     /// How many samples there are.
@@ -91,6 +106,16 @@ impl Grid {
         mut notes: Vec<String>,
     ) -> Result<VolumeData, SourceError> {
         let samples = stored.into_samples(path, scaling, &mut notes)?;
+        self.volume_of(path, samples, notes)
+    }
+
+    /// The volume of samples of a type that is drawn, turned.
+    pub fn volume_of(
+        &self,
+        path: &Path,
+        samples: Samples,
+        mut notes: Vec<String>,
+    ) -> Result<VolumeData, SourceError> {
         let turn = Turn::nearest(self.axes);
         let samples = if turn.is_none() { samples } else { turn.samples(path, &samples, self.size)? };
         notes.extend(self.notes(&turn));
@@ -99,8 +124,23 @@ impl Grid {
         let spacing = Vec3::from(turn.from.map(|axis| lengths[axis] as f32));
         let layout = |problem: LayoutError| SourceError::Layout { path: path.to_owned(), problem };
         let mut volume = VolumeData::new(size, spacing, samples).map_err(layout)?;
+        let (origin, space) = self.place.unwrap_or((DVec3::ZERO, Space::Unknown));
+        volume.frame = self.frame(&turn, origin, space);
         volume.notes = notes;
         Ok(volume)
+    }
+
+    /// Where the turned volume lies.
+    fn frame(&self, turn: &Turn, origin: DVec3, space: Space) -> Frame {
+        let mut frame = Frame { origin, directions: [DVec3::ZERO; 3], space };
+        for (world, &axis) in turn.from.iter().enumerate() {
+            let unit = self.axes[axis].normalize();
+            frame.directions[world] = if turn.reversed[world] { -unit } else { unit };
+            if turn.reversed[world] {
+                frame.origin += self.axes[axis] * f64::from(self.size[axis] - 1);
+            }
+        }
+        frame
     }
 
     fn notes(&self, turn: &Turn) -> Vec<String> {
@@ -120,11 +160,6 @@ impl Grid {
                 "its axes point {}; they are turned so that x points {x}, y {y} and z {z}",
                 points.join(", ")
             ));
-        }
-        let cosine = turn.cosine(self.axes);
-        if cosine < ALONG {
-            let degrees = cosine.min(1.0).acos().to_degrees();
-            notes.push(format!("its axes are up to {degrees:.1}° off the world's; it is drawn upright"));
         }
         notes
     }
@@ -170,11 +205,6 @@ impl Turn {
         self.from == [0, 1, 2] && self.reversed == [false; 3]
     }
 
-    /// The cosine of the greatest angle that is left between an axis and the world's.
-    fn cosine(&self, axes: [DVec3; 3]) -> f64 {
-        (0..3).map(|world| axes[self.from[world]].normalize()[world].abs()).fold(1.0, f64::min)
-    }
-
     fn samples(&self, path: &Path, samples: &Samples, size: [u32; 3]) -> Result<Samples, SourceError> {
         Ok(match samples {
             Samples::U8(samples) => Samples::U8(self.turned(path, samples, size)?),
@@ -182,6 +212,7 @@ impl Turn {
             Samples::U16(samples) => Samples::U16(self.turned(path, samples, size)?),
             Samples::I16(samples) => Samples::I16(self.turned(path, samples, size)?),
             Samples::F32(samples) => Samples::F32(self.turned(path, samples, size)?),
+            Samples::Rgba8(samples) => Samples::Rgba8(self.turned(path, samples, size)?),
         })
     }
 
@@ -239,9 +270,34 @@ mod tests {
     }
 
     #[test]
+    fn voxels_stay_where_the_file_has_them() {
+        let path = Path::new("a");
+        let axes = [DVec3::Z * 2.0, DVec3::new(-3.0, 0.3, 0.0), DVec3::new(0.4, 4.0, 0.0)];
+        let grid = Grid::new(path, &[2, 3, 4], &axes, true, 1).unwrap();
+        let grid = grid.at(path, DVec3::new(5.0, 6.0, 7.0), Space::Patient).unwrap();
+        let volume = grid.volume(path, Stored::U8((0..24).collect()), &Scaling::NONE, Vec::new()).unwrap();
+        let spacing = volume.spacing.as_dvec3();
+        let [x, y, z] = volume.frame.directions;
+        for file in [[0, 0, 0], [1, 2, 0], [1, 0, 3], [0, 1, 2]] {
+            let in_file = DVec3::new(5.0, 6.0, 7.0)
+                + (0..3).map(|axis| axes[axis] * f64::from(file[axis])).sum::<DVec3>();
+            // Voxel (x, y, z) of the volume is (z, 2 - x, y) of the file.
+            let kept = [2 - file[1], file[2], file[0]];
+            let value = file[0] + 2 * file[1] + 6 * file[2];
+            assert_eq!(volume.sample(kept), Some(value as f32));
+            let placed = volume.frame.origin
+                + x * spacing.x * f64::from(kept[0])
+                + y * spacing.y * f64::from(kept[1])
+                + z * spacing.z * f64::from(kept[2]);
+            assert!(placed.distance(in_file) < 1e-5, "{placed} for {in_file}");
+        }
+        assert!(Grid::new(path, &[1], &[], false, 1).unwrap().at(path, DVec3::NAN, Space::World).is_err());
+    }
+
+    #[test]
     fn a_rotation_is_told_and_impossible_axes_are_refused() {
         let tilted = turned([DVec3::new(0.8, 0.6, 0.0), DVec3::new(-0.6, 0.8, 0.0), DVec3::Z], false);
-        assert_eq!(tilted.notes, ["its axes are up to 36.9° off the world's; it is drawn upright"]);
+        assert!((tilted.frame.degrees_off() - 36.87).abs() < 0.01, "{:?}", tilted.frame);
         let refused = |axes: [DVec3; 3]| {
             Grid::new(Path::new("a"), &[2, 2, 2], &axes, false, 1).unwrap_err().to_string()
         };

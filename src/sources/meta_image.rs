@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 
 use super::{
-    SourceError, file,
+    Selection, SourceError, file,
     grid::Grid,
     pieces::{self, MAX_FILES},
     raw::GZIP_MAGIC,
@@ -23,7 +23,7 @@ use super::{
 /// # Errors
 ///
 /// If a line is wrong or missing, an element is of several channels, or the data are not there.
-pub(super) fn read(path: &Path) -> Result<VolumeData, SourceError> {
+pub(super) fn read(path: &Path, _selection: &Selection) -> Result<VolumeData, SourceError> {
     let header = Header::read(path)?;
     let mut notes = Vec::new();
     let mut size: Vec<u64> = header.list("DimSize", "such as `DimSize = 64 64 64`")?;

@@ -27,8 +27,10 @@ pub use error::{LayoutError, SourceError};
 pub use mesh::{MeshData, MeshStatistics};
 pub use obj::read_obj;
 pub use raw::{RawLayout, read_raw};
-pub use self_describing::read_volume;
-pub use volume::{BrickRanges, Endian, Histogram, SampleFormat, Samples, VolumeData};
+pub use self_describing::{Selection, read_volume};
+pub use volume::{
+    BrickRanges, Endian, Frame, Histogram, Label, Labels, SampleFormat, Samples, Space, VolumeData,
+};
 
 #[cfg(test)]
 mod tests;

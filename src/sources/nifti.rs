@@ -15,7 +15,7 @@ use flate2::read::MultiGzDecoder;
 use glam::{DMat3, DQuat, DVec3};
 
 use super::{
-    SourceError, file,
+    Selection, SourceError, file,
     grid::Grid,
     raw::GZIP_MAGIC,
     stored::{Scaling, StoredFormat},
@@ -47,7 +47,7 @@ pub(super) fn is_analyze(head: &[u8]) -> bool {
 /// # Errors
 ///
 /// If the header is cut off or contradicts itself, samples are colours or complex, or they are not all there.
-pub(super) fn read(path: &Path) -> Result<VolumeData, SourceError> {
+pub(super) fn read(path: &Path, _selection: &Selection) -> Result<VolumeData, SourceError> {
     let header = Header::read(path)?;
     let mut notes = Vec::new();
     let (format, dims) = (header.format()?, header.dims()?);

@@ -13,7 +13,7 @@ use std::{
 use glam::DVec3;
 
 use super::{
-    SourceError, file,
+    Selection, SourceError, file,
     grid::Grid,
     pieces,
     stored::Scaling,
@@ -32,7 +32,7 @@ const MAX_SKIPPED_BYTES: u64 = 1 << 26;
 ///
 /// If a line of the header is wrong or missing, its encoding is bzip2, more than one number stands at a place, or the data are
 /// not there.
-pub(super) fn read(path: &Path) -> Result<VolumeData, SourceError> {
+pub(super) fn read(path: &Path, _selection: &Selection) -> Result<VolumeData, SourceError> {
     let mut notes = Vec::new();
     let header = Header::read(path)?;
     let (axes, is_part) = spatial(path, header.axes.clone(), &mut notes)?;

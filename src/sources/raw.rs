@@ -6,9 +6,9 @@ use glam::Vec3;
 
 use super::{
     LayoutError, SourceError, file,
-    stored::Scaling,
+    stored::{Scaling, Stored, StoredFormat},
     stream::{Packing, SampleStream, Surplus},
-    volume::{Endian, MAX_VOLUME_BYTES, SampleFormat, VolumeData, check_spacing, checked_bytes},
+    volume::{Endian, MAX_VOLUME_BYTES, SampleFormat, Samples, VolumeData, check_spacing, checked_bytes},
 };
 
 /// What every gzip file begins with.
@@ -63,11 +63,12 @@ pub fn read_raw(path: &Path, layout: &RawLayout) -> Result<VolumeData, SourceErr
         _ => "",
     };
     let RawLayout { size: [x, y, z], format, endian, skip_bytes, .. } = *layout;
+    let (stored_format, numbers) = StoredFormat::of(format);
     let stream = SampleStream {
         path,
         what: format!("{x} x {y} x {z} {format} voxels"),
-        samples: bytes / format.bytes(),
-        format: format.into(),
+        samples: bytes / format.bytes() * numbers,
+        format: stored_format,
         endian,
         packing: if begins_like_gzip && named_gzip { Packing::Gzip } else { Packing::Plain },
         offset: 0,
@@ -78,7 +79,10 @@ pub fn read_raw(path: &Path, layout: &RawLayout) -> Result<VolumeData, SourceErr
     };
     let mut notes = Vec::new();
     let stored = stream.read(file, file_bytes, &mut notes)?;
-    let samples = stored.into_samples(path, &Scaling::NONE, &mut notes)?;
+    let samples = match (format, stored) {
+        (SampleFormat::Rgba8, Stored::U8(bytes)) => Samples::Rgba8(bytemuck::cast_slice(&bytes).to_vec()),
+        (_, stored) => stored.into_samples(path, &Scaling::NONE, &mut notes)?,
+    };
     VolumeData::new(layout.size, layout.spacing, samples).map_err(as_error)
 }
 

@@ -34,6 +34,17 @@ use super::{SourceError, VolumeData, dicom, file, meta_image, nifti, nrrd, raw::
 /// Bytes that are looked at to tell formats apart.
 const HEAD: u64 = 1024;
 
+/// Which of the volumes in a file is meant, where it holds several.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Selection {
+    /// The entry along a fourth axis, such as a time point, counted from 0.
+    pub index: u32,
+    /// The component of samples that consist of several numbers, counted from 0; `None` for all of a colour, else the first.
+    pub component: Option<u32>,
+    /// The series of DICOM slices, by its `SeriesInstanceUID`, number or description; `None` for the largest.
+    pub series: Option<String>,
+}
+
 /// Reads a volume from a file, or a folder of DICOM slices, that says itself what it holds.
 ///
 /// The format is told by the content, and by the name only where the content says nothing. What a person should know about how
@@ -42,9 +53,9 @@ const HEAD: u64 = 1024;
 /// # Errors
 ///
 /// If the format is none that is read, or its reader refuses the file.
-pub fn read_volume(path: &Path) -> Result<VolumeData, SourceError> {
+pub fn read_volume(path: &Path, selection: &Selection) -> Result<VolumeData, SourceError> {
     if fs::metadata(path).is_ok_and(|metadata| metadata.is_dir()) {
-        return dicom::read_folder(path);
+        return dicom::read_folder(path, selection);
     }
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     // The header of a pair is what describes it, whichever of the two is named.
@@ -54,11 +65,11 @@ pub fn read_volume(path: &Path) -> Result<VolumeData, SourceError> {
         trail::note(&header);
     }
     if ending == "img" && header.is_file() {
-        return read_volume(&header);
+        return read_volume(&header, selection);
     }
     let (head, packed) = head(path)?;
     if nifti::is_nifti(&head) {
-        return nifti::read(path);
+        return nifti::read(path, selection);
     }
     let known = if head.starts_with(b"NRRD00") {
         nrrd::read
@@ -76,7 +87,7 @@ pub fn read_volume(path: &Path) -> Result<VolumeData, SourceError> {
         let mend = "unpack it with `gunzip`".to_owned();
         return Err(SourceError::Unsupported { path: path.to_owned(), found, mend });
     }
-    known(path)
+    known(path, selection)
 }
 
 /// The first bytes of a file, unpacked if it is gzipped.

@@ -109,15 +109,18 @@ stored! {
     };
 }
 
-impl From<SampleFormat> for StoredFormat {
-    fn from(format: SampleFormat) -> Self {
-        match format {
+impl StoredFormat {
+    /// How the numbers of a sample are stored, and how many there are.
+    pub fn of(format: SampleFormat) -> (Self, u64) {
+        let single = match format {
             SampleFormat::U8 => Self::U8,
             SampleFormat::I8 => Self::I8,
             SampleFormat::U16 => Self::U16,
             SampleFormat::I16 => Self::I16,
             SampleFormat::F32 => Self::F32,
-        }
+            SampleFormat::Rgba8 => return (Self::U8, 4),
+        };
+        (single, 1)
     }
 }
 

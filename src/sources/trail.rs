@@ -89,7 +89,7 @@ fn note_state(path: &Path, state: impl FnOnce() -> FileState) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sources::{read_obj, read_volume};
+    use crate::sources::{Selection, read_obj, read_volume};
 
     fn names(trail: &Trail) -> Vec<String> {
         trail.keys().map(|path| path.file_name().unwrap().to_string_lossy().into_owned()).collect()
@@ -102,13 +102,13 @@ mod tests {
         let header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 1 2\nencoding: raw\ndata file: LIST\na.raw\nb.raw\n";
         fs::write(at("v.nhdr"), header).unwrap();
         fs::write(at("a.raw"), [1, 2]).unwrap();
-        let (read, trail) = follow(|| read_volume(&at("v.nhdr")));
+        let (read, trail) = follow(|| read_volume(&at("v.nhdr"), &Selection::default()));
         assert!(read.is_err());
         assert_eq!(names(&trail), ["a.raw", "b.raw", "v.nhdr"]);
         assert_eq!(trail[&at("b.raw")], FileState::Missing);
         assert_eq!(trail[&at("a.raw")], FileState::of(&at("a.raw")));
         fs::write(at("b.raw"), [3, 4]).unwrap();
-        let (read, trail) = follow(|| read_volume(&at("v.nhdr")));
+        let (read, trail) = follow(|| read_volume(&at("v.nhdr"), &Selection::default()));
         assert_eq!((read.unwrap().size, trail.len()), ([2, 1, 2], 3));
     }
 
@@ -116,7 +116,7 @@ mod tests {
     fn a_folder_counts_and_so_does_what_is_in_it() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("notes.txt"), "none of these").unwrap();
-        let (read, trail) = follow(|| read_volume(folder.path()));
+        let (read, trail) = follow(|| read_volume(folder.path(), &Selection::default()));
         assert!(read.is_err());
         assert!(matches!(trail[folder.path()], FileState::Folder { .. }));
         assert!(trail.contains_key(&folder.path().join("notes.txt")));

@@ -1,7 +1,9 @@
 //! Regular grids of samples, the range of values in each brick of them, and how often each value occurs.
 
 mod bricks;
+mod frame;
 mod histogram;
+mod labels;
 
 use std::fmt;
 
@@ -9,7 +11,9 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::Vec3;
 
 pub use bricks::BrickRanges;
+pub use frame::{Frame, Space};
 pub use histogram::Histogram;
+pub use labels::{Label, Labels};
 
 use super::LayoutError;
 
@@ -35,6 +39,8 @@ pub enum SampleFormat {
     I16,
     /// IEEE 754, 32 bits.
     F32,
+    /// A colour: red, green, blue and opacity, 8 bits each, the first three encoded as in sRGB. Its value is its luminance.
+    Rgba8,
 }
 
 impl SampleFormat {
@@ -43,14 +49,14 @@ impl SampleFormat {
         match self {
             Self::U8 | Self::I8 => 1,
             Self::U16 | Self::I16 => 2,
-            Self::F32 => 4,
+            Self::F32 | Self::Rgba8 => 4,
         }
     }
 
     /// The least and greatest value of an integer format; `None` for floating point.
     pub const fn integer_range(self) -> Option<(f32, f32)> {
         match self {
-            Self::U8 => Some((0.0, 255.0)),
+            Self::U8 | Self::Rgba8 => Some((0.0, 255.0)),
             Self::I8 => Some((-128.0, 127.0)),
             Self::U16 => Some((0.0, 65535.0)),
             Self::I16 => Some((-32768.0, 32767.0)),
@@ -90,6 +96,15 @@ pub enum Samples {
     I16(Vec<i16>),
     /// IEEE 754, 32 bits; NaN and infinities are kept as they are.
     F32(Vec<f32>),
+    /// Red, green, blue and opacity, 8 bits each; see [`luminance`] for what counts as its value.
+    Rgba8(Vec<[u8; 4]>),
+}
+
+/// The value of a colour, 0 to 255: the luminance of its encoded primaries (ITU-R BT.709 weights) times its opacity.
+pub fn luminance([red, green, blue, opacity]: [u8; 4]) -> u8 {
+    let [red, green, blue, opacity] = [red, green, blue, opacity].map(u32::from);
+    let luma = 2126 * red + 7152 * green + 722 * blue;
+    ((luma * opacity + 1_275_000) / 2_550_000) as u8
 }
 
 impl Samples {
@@ -101,6 +116,7 @@ impl Samples {
             Self::U16(_) => SampleFormat::U16,
             Self::I16(_) => SampleFormat::I16,
             Self::F32(_) => SampleFormat::F32,
+            Self::Rgba8(_) => SampleFormat::Rgba8,
         }
     }
 
@@ -112,6 +128,7 @@ impl Samples {
             Self::U16(_) => Self::U16(Vec::new()),
             Self::I16(_) => Self::I16(Vec::new()),
             Self::F32(_) => Self::F32(Vec::new()),
+            Self::Rgba8(_) => Self::Rgba8(Vec::new()),
         }
     }
 
@@ -123,6 +140,7 @@ impl Samples {
             Self::U16(samples) => samples.len(),
             Self::I16(samples) => samples.len(),
             Self::F32(samples) => samples.len(),
+            Self::Rgba8(samples) => samples.len(),
         }
     }
 
@@ -139,6 +157,7 @@ impl Samples {
             Self::U16(samples) => samples.get(index).map(|&sample| sample.into()),
             Self::I16(samples) => samples.get(index).map(|&sample| sample.into()),
             Self::F32(samples) => samples.get(index).copied(),
+            Self::Rgba8(samples) => samples.get(index).map(|&colour| luminance(colour).into()),
         }
     }
 
@@ -150,6 +169,7 @@ impl Samples {
             Self::U16(samples) => bytemuck::cast_slice(samples),
             Self::I16(samples) => bytemuck::cast_slice(samples),
             Self::F32(samples) => bytemuck::cast_slice(samples),
+            Self::Rgba8(samples) => bytemuck::cast_slice(samples),
         }
     }
 }
@@ -174,6 +194,12 @@ pub struct VolumeData {
     pub bricks: BrickRanges,
     /// How often each value occurs.
     pub histogram: Histogram,
+    /// Where the voxels lie in the world of the file.
+    pub frame: Frame,
+    /// The least and greatest value to look at, where the file recommends any (a window of DICOM, `cal_min` and `cal_max` of NIfTI).
+    pub window: Option<(f32, f32)>,
+    /// What the values mean, where the file says that they are labels.
+    pub labels: Option<Labels>,
     /// What a person should know about how the file was read; empty where there is nothing to say.
     pub notes: Vec<String>,
 }
@@ -194,7 +220,19 @@ impl VolumeData {
         let (bricks, non_finite) = bricks::ranges_of(&samples, size);
         let range = bricks.range().unwrap_or((0.0, 0.0));
         let histogram = Histogram::of(&samples, range);
-        Ok(Self { size, spacing, samples, range, non_finite, bricks, histogram, notes: Vec::new() })
+        Ok(Self {
+            size,
+            spacing,
+            samples,
+            range,
+            non_finite,
+            bricks,
+            histogram,
+            frame: Frame::centred(size, spacing),
+            window: None,
+            labels: None,
+            notes: Vec::new(),
+        })
     }
 
     /// The sample of voxel (x, y, z), unscaled; `None` outside.

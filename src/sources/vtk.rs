@@ -11,7 +11,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::{
-    SourceError, file,
+    Selection, SourceError, file,
     grid::Grid,
     stored::{Scaling, StoredFormat},
     stream::{Packing, SampleStream, Surplus, mend_by_header},
@@ -28,7 +28,7 @@ pub(super) const MAGIC: &[u8] = b"# vtk DataFile";
 ///
 /// If a line is wrong or missing, the dataset is of another kind, its first array are vectors or colours, or the data are not
 /// there.
-pub(super) fn read(path: &Path) -> Result<VolumeData, SourceError> {
+pub(super) fn read(path: &Path, _selection: &Selection) -> Result<VolumeData, SourceError> {
     let mut lines = HeaderLines::open(path)?;
     // The magic was looked at to find this reader; the second line is a title.
     lines.next()?;

@@ -45,7 +45,7 @@ pub const TABLE: Table = Table {
             "light_volume 2, scattered_light 1, summed_light 1, eye_light 3",
         ),
         (
-            "cube.Volume.0",
+            "cube.Volume.path",
             "\"other.nrrd\"",
             "upload_volumes 1 of 216 voxels, classify 1 of 32 entries, light_volume 2",
         ),

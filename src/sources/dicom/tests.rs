@@ -149,7 +149,7 @@ fn a_folder_is_sorted_by_place_and_the_largest_series() {
     }
     folder.file("readme.txt", "no slice");
     folder.file("broken", &Dicom::slice(EXPLICIT, 4.0, "7.7").pixels(&PIXELS).file()[..300]);
-    let volume = read_folder(&folder.path("")).unwrap();
+    let volume = read_folder(&folder.path(""), &Selection::default()).unwrap();
     assert_eq!((volume.size, volume.spacing), ([3, 2, 3], Vec3::new(0.25, 0.5, 1.0)));
     assert_eq!([0, 1, 2].map(|z| volume.sample([0, 0, z]).unwrap()), [10.0, 20.0, 30.0]);
     let notes = volume.notes.join("\n");
@@ -157,7 +157,7 @@ fn a_folder_is_sorted_by_place_and_the_largest_series() {
     assert!(notes.contains("of 2 series only the largest is read"), "{notes}");
     folder.file("e", Dicom::slice(EXPLICIT, 5.0, "7.7").pixels(&[50; 6]).file());
     folder.file("f", Dicom::slice(EXPLICIT, 5.0, "7.7").pixels(&[51; 6]).file());
-    let notes = read_folder(&folder.path("")).unwrap().notes.join("\n");
+    let notes = read_folder(&folder.path(""), &Selection::default()).unwrap().notes.join("\n");
     assert!(notes.contains("1 slices at the place of another"), "{notes}");
     assert!(notes.contains("1.000 to 2.000 mm apart (are some missing?); 1.000 mm"), "{notes}");
 }

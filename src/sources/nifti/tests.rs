@@ -84,8 +84,8 @@ fn both_versions_are_read_in_both_byte_orders_packed_or_not() {
     folder.file("b.img", ramp());
     assert_eq!(folder.read("b.hdr", &pair.bytes).samples, Samples::U8(ramp()));
     assert_eq!(
-        read(&folder.path("b.hdr")).unwrap(),
-        crate::sources::read_volume(&folder.path("b.img")).unwrap()
+        read(&folder.path("b.hdr"), &Selection::default()).unwrap(),
+        crate::sources::read_volume(&folder.path("b.img"), &Selection::default()).unwrap()
     );
 }
 

@@ -26,7 +26,7 @@ impl Folder {
 
     /// What a file of these bytes is read as.
     pub fn read(&self, name: &str, bytes: impl AsRef<[u8]>) -> VolumeData {
-        read_volume(&self.file(name, bytes)).unwrap()
+        read_volume(&self.file(name, bytes), &Selection::default()).unwrap()
     }
 
     /// What a file of these bytes is refused with, without the folder.
@@ -35,7 +35,7 @@ impl Folder {
     }
 
     pub fn refused(&self, path: &Path) -> String {
-        let text = read_volume(path).unwrap_err().to_string();
+        let text = read_volume(path, &Selection::default()).unwrap_err().to_string();
         text.replace(&format!("{}/", self.0.path().display()), "")
     }
 }
@@ -98,7 +98,7 @@ pub(in crate::sources) fn mutate(name: &str, bytes: &[u8], header: usize) {
         }
         let path = folder.file(name, &damaged);
         let start = std::time::Instant::now();
-        let read = read_volume(&path);
+        let read = read_volume(&path, &Selection::default());
         assert!(start.elapsed().as_secs() < 10, "{:?}", String::from_utf8_lossy(&damaged));
         if let Ok(volume) = read {
             assert!(volume.samples.as_bytes().len() <= 1100 * bytes.len());

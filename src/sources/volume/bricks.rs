@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::{MAX_SAMPLE_MAGNITUDE, Samples};
+use super::{MAX_SAMPLE_MAGNITUDE, Samples, luminance};
 
 /// The range of the finite samples in each brick of a volume.
 ///
@@ -42,6 +42,9 @@ pub(super) fn ranges_of(samples: &Samples, size: [u32; 3]) -> (BrickRanges, u64)
         Samples::U16(samples) => scan(samples, size),
         Samples::I16(samples) => scan(samples, size),
         Samples::F32(samples) => scan(samples, size),
+        Samples::Rgba8(samples) => {
+            scan(&samples.iter().map(|&colour| luminance(colour)).collect::<Vec<u8>>(), size)
+        }
     }
 }
 

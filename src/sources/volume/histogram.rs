@@ -1,6 +1,6 @@
 //! How often each value occurs in a volume.
 
-use super::{MAX_SAMPLE_MAGNITUDE, Samples};
+use super::{MAX_SAMPLE_MAGNITUDE, Samples, luminance};
 
 /// How often the values of a volume occur, in [`Histogram::BINS`] bins of equal width; samples that are not finite are in none.
 ///
@@ -34,6 +34,7 @@ impl Histogram {
             Samples::U16(samples) => Self::of_numbers(samples, range),
             Samples::I16(samples) => Self::of_numbers(samples, range),
             Samples::F32(samples) => Self::of_numbers(samples, range),
+            Samples::Rgba8(samples) => of_bytes(count(samples, |colour| luminance(colour).into()), 0.0),
         }
     }
 

@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(chosen(Auto::<u32>::Auto, "Value"), Auto::Value(0));
         // A radius must be above 0.
         assert!(matches!(chosen(SampleRadius::Auto, "Millimetres"), SampleRadius::Millimetres(r) if r > 0.0));
-        let raw = chosen(Volume::File(Default::default()), "Raw");
+        let raw = chosen(Volume::file(""), "Raw");
         assert!(matches!(raw, Volume::Raw { size: UVec3::ONE, spacing: Vec3::ONE, .. }), "{raw:?}");
     }
 
