@@ -1,27 +1,40 @@
 //! Triangle meshes in memory.
 
 mod assemble;
+mod material;
 mod normals;
 mod refine;
 mod statistics;
 
-use glam::Vec3;
+use glam::{DVec3, Vec2, Vec3};
 
 pub(super) use assemble::counted;
+pub use material::{MeshMaterial, MeshPart, MeshSubsurface, TextureImage};
 pub use statistics::MeshStatistics;
 
 /// A triangle mesh: every vertex is used, finite and has a unit normal; no triangle has zero area.
 ///
-/// Positions are in the units of the file. Triangles are counter-clockwise seen from the side they face.
+/// Positions are in the units of the file. Triangles are counter-clockwise seen from the side they face. Colours are linear, with the
+/// primaries of sRGB.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct MeshData {
-    /// One position per vertex.
+    /// What positions are relative to: 0 unless the mesh lies so far out that single precision would not resolve it.
+    pub origin: DVec3,
+    /// One position per vertex, relative to the origin.
     pub positions: Vec<Vec3>,
     /// One unit normal per vertex.
     pub normals: Vec<Vec3>,
     /// Three indices into the vertices each.
     pub triangles: Vec<[u32; 3]>,
+    /// Red, green, blue and opacity of each vertex, which the diffuse colour is multiplied by; empty if the file says none.
+    pub colours: Vec<[f32; 4]>,
+    /// One per vertex, (0, 0) in the lower left corner of a picture; empty if the file says none.
+    pub texture_coordinates: Vec<Vec2>,
+    /// Ascending and disjoint; triangles of no part have no material of their own.
+    pub parts: Vec<MeshPart>,
+    /// What the parts look like; empty if the file does not say it.
+    pub materials: Vec<MeshMaterial>,
     /// What a person should know about how the mesh was read: `3 zero-area triangles dropped`.
     pub notes: Vec<String>,
 }
@@ -37,7 +50,7 @@ impl MeshData {
         assemble::assemble(positions, normals, triangles)
     }
 
-    /// The least and greatest corner of the axis-aligned box around the vertices; `None` without any.
+    /// The least and greatest corner of the axis-aligned box around the vertices, relative to the origin; `None` without any.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let first = *self.positions.first()?;
         Some(self.positions.iter().fold((first, first), |(least, greatest), &position| {

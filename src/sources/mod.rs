@@ -24,7 +24,7 @@ pub mod volume;
 mod vtk;
 
 pub use error::{LayoutError, SourceError};
-pub use mesh::{MeshData, MeshStatistics};
+pub use mesh::{MeshData, MeshMaterial, MeshPart, MeshStatistics, MeshSubsurface, TextureImage};
 pub use obj::read_obj;
 pub use raw::{RawLayout, read_raw};
 pub use self_describing::{Selection, read_volume};

@@ -22,7 +22,7 @@ pub fn sphere(radius: f32, subdivisions: u32) -> MeshData {
         positions: directions.iter().map(|direction| (direction * f64::from(radius)).as_vec3()).collect(),
         normals: directions.iter().map(|direction| direction.as_vec3()).collect(),
         triangles,
-        notes: Vec::new(),
+        ..MeshData::default()
     }
 }
 

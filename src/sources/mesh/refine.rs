@@ -51,13 +51,23 @@ impl MeshData {
     fn halve_edges(&mut self, scale: DMat3, longest: f64) -> bool {
         let mut middles: HashMap<(u32, u32), Option<u32>> = HashMap::new();
         let mut triangles = Vec::with_capacity(self.triangles.len());
+        // How many triangles there are before each of the old ones: only where parts have to follow.
+        let mut starts = Vec::new();
         for triangle in std::mem::take(&mut self.triangles) {
+            if !self.parts.is_empty() {
+                starts.push(triangles.len() as u32);
+            }
             let [a, b, c] = triangle;
             let split = [(a, b), (b, c), (c, a)].map(|(from, to)| {
                 let edge = (from.min(to), from.max(to));
                 *middles.entry(edge).or_insert_with(|| self.middle(scale, edge, longest))
             });
             cut(triangle, split, &mut triangles);
+        }
+        let end = triangles.len() as u32;
+        let moved = |triangle: u32| starts.get(triangle as usize).copied().unwrap_or(end);
+        for part in &mut self.parts {
+            part.triangles = moved(part.triangles.start)..moved(part.triangles.end);
         }
         self.triangles = triangles;
         middles.values().any(Option::is_some)
@@ -75,6 +85,12 @@ impl MeshData {
         let sum = self.normals[from].as_dvec3() + self.normals[to].as_dvec3();
         self.normals.push(normals::unit(sum).unwrap_or(self.normals[from]));
         self.positions.push(middle);
+        if let (Some(a), Some(b)) = (self.colours.get(from), self.colours.get(to)) {
+            self.colours.push(std::array::from_fn(|channel| (a[channel] + b[channel]) / 2.0));
+        }
+        if let (Some(a), Some(b)) = (self.texture_coordinates.get(from), self.texture_coordinates.get(to)) {
+            self.texture_coordinates.push((*a + *b) / 2.0);
+        }
         Some(self.positions.len() as u32 - 1)
     }
 

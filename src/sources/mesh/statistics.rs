@@ -1,6 +1,6 @@
 //! What a person asks of a mesh: how large, how many, is it closed?
 
-use glam::Vec3;
+use glam::DVec3;
 
 use super::{MeshData, assemble::weld};
 
@@ -20,8 +20,8 @@ pub struct MeshStatistics {
     pub non_manifold_edges: usize,
     /// Parts that share no vertex.
     pub components: usize,
-    /// The least and greatest corner of the box around it; `None` without vertices.
-    pub bounds: Option<(Vec3, Vec3)>,
+    /// The least and greatest corner of the box around it, in the file's coordinates; `None` without vertices.
+    pub bounds: Option<(DVec3, DVec3)>,
 }
 
 impl MeshStatistics {
@@ -37,7 +37,9 @@ impl MeshStatistics {
             open_edges,
             non_manifold_edges,
             components: count_components(mesh.positions.len(), &triangles),
-            bounds: mesh.bounds(),
+            bounds: mesh
+                .bounds()
+                .map(|(least, greatest)| (mesh.origin + least.as_dvec3(), mesh.origin + greatest.as_dvec3())),
         }
     }
 }

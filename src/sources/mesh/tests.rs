@@ -88,3 +88,33 @@ fn statistics_see_holes_parts_and_forks() {
     assert!((statistics.area - (1.5 + 0.5_f64.sqrt())).abs() < 1e-6, "{}", statistics.area);
     assert_eq!(MeshData::default().statistics(), MeshStatistics::default());
 }
+
+#[test]
+fn a_finer_mesh_keeps_colours_coordinates_and_parts() {
+    let mesh = MeshData {
+        positions: vec![Vec3::ZERO, Vec3::X * 4.0, Vec3::Y * 4.0, Vec3::NEG_X],
+        normals: vec![Vec3::Z; 4],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        colours: vec![[0.0; 4], [1.0; 4], [0.0; 4], [0.0; 4]],
+        texture_coordinates: vec![Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ZERO],
+        parts: vec![MeshPart { triangles: 0..1, material: 1 }, MeshPart { triangles: 1..2, material: 0 }],
+        ..MeshData::default()
+    };
+    let (finer, _) = mesh.refined(glam::DMat3::IDENTITY, 0.5, 10_000);
+    assert!(finer.triangles.len() > 64);
+    assert_eq!(finer.colours.len(), finer.positions.len());
+    assert_eq!(finer.texture_coordinates.len(), finer.positions.len());
+    let [first, second] = &finer.parts[..] else { panic!("{:?}", finer.parts) };
+    assert_eq!((first.triangles.start, second.triangles.end), (0, finer.triangles.len() as u32));
+    assert_eq!(first.triangles.end, second.triangles.start);
+    for (index, triangle) in finer.triangles.iter().enumerate() {
+        let part = if first.triangles.contains(&(index as u32)) { first } else { second };
+        for &corner in triangle {
+            let corner = corner as usize;
+            let x = finer.positions[corner].x;
+            assert!(if part.material == 1 { x >= 0.0 } else { x <= 0.0 });
+            assert!((finer.colours[corner][0] - x.max(0.0) / 4.0).abs() < 1e-6);
+            assert!((finer.texture_coordinates[corner].x - x.max(0.0) / 4.0).abs() < 1e-6);
+        }
+    }
+}

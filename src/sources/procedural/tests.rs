@@ -51,7 +51,7 @@ fn a_cornell_box_faces_inwards_and_is_open_in_front() {
     let mesh = cornell_box();
     let statistics = mesh.statistics();
     assert_eq!((statistics.triangles, statistics.open_edges, statistics.area), (10, 4, 20.0));
-    assert_eq!(statistics.bounds, Some((Vec3::NEG_ONE, Vec3::ONE)));
+    assert_eq!(statistics.bounds, Some((DVec3::NEG_ONE, DVec3::ONE)));
     assert!(facings(&mesh).all(|(facing, normal)| facing == normal));
     assert!(mesh.positions.iter().zip(&mesh.normals).all(|(position, normal)| position.dot(*normal) < 0.0));
     assert!(mesh.normals.iter().all(|normal| *normal != Vec3::NEG_Z));
