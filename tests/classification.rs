@@ -5,6 +5,7 @@ mod support;
 
 use support::{Studio, difference, middle};
 use tyndall::gpu::GpuOptions;
+use tyndall_needs::needs;
 
 /// A camera on the z axis that looks at the origin, orthographic.
 fn camera(z: f64, height: f64) -> String {
@@ -22,8 +23,8 @@ mod segments {
         truth["cases"].as_array().unwrap().clone()
     }
 
+    #[needs(gpu)]
     #[test]
-    #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
     fn of_few_steps_hold_to_a_thousandth() {
         let mut studio = Studio::new();
         let mut worst = (0.0, String::new());
@@ -39,8 +40,8 @@ mod segments {
         assert!(worst.0 < 1e-3, "{worst:?}");
     }
 
+    #[needs(gpu)]
     #[test]
-    #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
     fn with_a_spike_are_ten_times_closer_than_classified_samples() {
         let mut studio = Studio::new();
         let mut sums = [0.0; 2];
@@ -147,8 +148,8 @@ const SMOOTH: &str =
 /// A surface at a distance of 10 voxels from the middle of the ball.
 const SURFACE: &str = "iso: [(value: 10.0, width: 0.0, color: (1.0, 0.5, 0.25), absorption: 3.0)], entries: 256, classification: PreIntegrated";
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn in_small_steps_samples_and_pairs_agree() {
     let mut studio = Studio::new();
     for lighting in ["EmissionAbsorption", "Gradient()"] {
@@ -163,8 +164,8 @@ fn in_small_steps_samples_and_pairs_agree() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn leaping_over_empty_bricks_misses_no_surface() {
     let mut studio = Studio::new();
     for step in ["0.7", "3.0", "11.0"] {
@@ -184,8 +185,8 @@ fn leaping_over_empty_bricks_misses_no_surface() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_portable_variant_draws_the_same() {
     for function in [SURFACE, &format!("{SMOOTH}, classification: Pre")] {
         let seen = |options: &GpuOptions| {
@@ -201,8 +202,8 @@ fn the_portable_variant_draws_the_same() {
 mod surfaces {
     use super::*;
 
+    #[needs(gpu)]
     #[test]
-    #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
     fn have_no_holes_and_the_same_depth_at_every_step() {
         let mut studio = Studio::new();
         let n = 48;
@@ -255,8 +256,8 @@ mod surfaces {
         )
     }
 
+    #[needs(gpu)]
     #[test]
-    #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
     fn of_any_number_hide_each_other_in_order() {
         let mut studio = Studio::new();
         let layers = "(value: 0.2, width: 0.0, color: (1.0, 0.0, 0.0), absorption: 0.5),
@@ -270,8 +271,8 @@ mod surfaces {
         }
     }
 
+    #[needs(gpu)]
     #[test]
-    #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
     fn are_whole_in_front_of_a_mesh_and_hidden_behind_it() {
         let mut studio = Studio::new();
         let layer = "(value: 0.5, width: 0.0, color: (1.0, 0.0, 0.0), absorption: 0.5)";
@@ -289,8 +290,8 @@ mod surfaces {
         }
     }
 
+    #[needs(gpu)]
     #[test]
-    #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
     fn of_overlapping_volumes_are_all_seen() {
         let mut studio = Studio::new();
         studio.volume("slope.raw", [2, 2, 8], |[_, _, z]| z as f32);
@@ -314,8 +315,8 @@ mod surfaces {
         assert!((0..3).all(|c| (seen[c] - exact[c]).abs() < 1e-4), "{seen:?}, expected {exact:?}");
     }
 
+    #[needs(gpu)]
     #[test]
-    #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
     fn are_shaded_where_they_are() {
         let mut studio = Studio::new();
         let n = 64;
@@ -401,8 +402,8 @@ mod voxels {
         radiance
     }
 
+    #[needs(gpu)]
     #[test]
-    #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
     fn are_interpolated_with_their_colours() {
         let mut studio = Studio::new();
         studio.volume("v.raw", [N; 3], |cell| sample(cell) as f32);
@@ -431,8 +432,8 @@ mod voxels {
         assert!(worst < 1e-3, "{worst}");
     }
 
+    #[needs(gpu)]
     #[test]
-    #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
     fn and_pairs_that_touch_what_is_not_finite_are_transparent() {
         let mut studio = Studio::new();
         studio.volume("holes.raw", [8, 8, 8], |[x, ..]| if x < 4 { 0.5 } else { f32::NAN });
@@ -460,8 +461,8 @@ mod voxels {
 mod work {
     use super::*;
 
+    #[needs(gpu)]
     #[test]
-    #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
     fn is_done_again_only_when_the_function_or_the_step_changes() {
         let mut studio = Studio::new();
         studio.volume("v.raw", [4, 4, 4], |[x, ..]| x as f32);
@@ -501,8 +502,8 @@ mod work {
         assert_eq!(held(&studio), None);
     }
 
+    #[needs(gpu)]
     #[test]
-    #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
     fn on_a_part_of_the_pairs_shows_what_all_of_them_would() {
         let mut studio = Studio::new();
         let scene = |studio: &Studio, opacity: &str| {
@@ -520,8 +521,8 @@ mod work {
         assert_eq!(seen, fresh.radiance(&after, 33, 27));
     }
 
+    #[needs(gpu)]
     #[test]
-    #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
     fn on_voxels_is_done_again_only_when_the_function_or_the_data_changes() {
         let mut studio = Studio::new();
         studio.volume("v.raw", [4, 4, 4], |[x, ..]| x as f32);

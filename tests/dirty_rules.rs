@@ -33,6 +33,7 @@ mod volumes;
 use stage::Stage;
 use std::collections::BTreeSet;
 use table::Table;
+use tyndall_needs::needs;
 
 const TABLES: [Table; 4] = [in_company::TABLE, in_the_way::TABLE, meshes::TABLE, volumes::TABLE];
 
@@ -48,33 +49,33 @@ fn every_field_has_a_row() {
     );
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn meshes_and_volumes_in_company() {
     in_company::TABLE.hold();
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn meshes_and_volumes_in_the_way_of_light() {
     in_the_way::TABLE.hold();
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn meshes_alone() {
     meshes::TABLE.hold();
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn volumes_alone() {
     volumes::TABLE.hold();
 }
 
 /// A system may write what is there already, and the clock of changes goes on.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn writing_what_is_there_makes_nothing_again() {
     for table in TABLES {
         let mut stage = Stage::open(table.scene);

@@ -19,10 +19,11 @@ use tyndall::gpu::{Gpu, GpuError, GpuOptions};
 use tyndall::render::{Pixels, render_what_is_there};
 use tyndall::report::Report;
 use tyndall::scene::{EntityProblems, SceneEntities};
+use tyndall_needs::needs;
 
 /// Whatever is on the device, all of it is made again on the next one: every scene there is draws as it did.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn every_scene_is_drawn_as_before_after_the_device_was_lost() {
     let mut studio = Studio::new();
     studio.app.add_plugins(tyndall_turntable::TurntablePlugin);
@@ -45,8 +46,8 @@ fn every_scene_is_drawn_as_before_after_the_device_was_lost() {
     assert!(drawn > 10);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn what_the_driver_refuses_is_an_error_and_no_panic() {
     let gpu = pollster::block_on(Gpu::new(&GpuOptions::default())).unwrap();
     let too_large = || {
@@ -98,8 +99,8 @@ fn failures(live: &mut Live, updates: usize) -> usize {
     (0..updates).filter(|_| render_what_is_there(&mut live.app).is_err()).count()
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_pass_that_fails_marks_its_entity_and_waits_for_a_change() {
     with_own_shaders("a_pass_that_fails_marks_its_entity_and_waits_for_a_change", |shaders| {
         let mut app = bevy_app::App::new();

@@ -8,6 +8,7 @@ mod support;
 
 use std::path::{Path, PathBuf};
 use support::Studio;
+use tyndall_needs::needs;
 
 const WIDTH: u32 = 160;
 const HEIGHT: u32 = 90;
@@ -31,8 +32,8 @@ fn scenes() -> Vec<PathBuf> {
     scenes
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn every_scene_looks_as_it_did() {
     let mut studio = Studio::new();
     studio.app.add_plugins(tyndall_turntable::TurntablePlugin);

@@ -4,6 +4,7 @@
 mod support;
 
 use support::{Studio, middle};
+use tyndall_needs::needs;
 
 /// A box of one medium, 4 x 4 x 2 mm about a place, with an extinction of 0.35 per mm.
 fn fog(studio: &Studio, at: [f64; 3], more: &str) -> String {
@@ -38,8 +39,8 @@ fn plane(name: &str, at: [f64; 3], size: [f64; 2], more: &str) -> String {
 
 const DOWN: &str = "\"sun\": ( DirectionalLight: (direction: (0.0, 0.0, -1.0)) ),";
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_volume_dims_the_light_that_reaches_a_mesh() {
     let mut studio = Studio::new();
     // The sun stands askew, so that the floor is seen beside the fog that shades it.
@@ -77,8 +78,8 @@ fn a_volume_dims_the_light_that_reaches_a_mesh() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_mesh_casts_its_shadow_into_a_volume() {
     let mut studio = Studio::new();
     // A roof over the half of the fog with x > 0, edge on for an eye that looks along y.
@@ -123,8 +124,8 @@ fn a_mesh_casts_its_shadow_into_a_volume() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_volume_dims_what_leaves_a_translucent_mesh() {
     let mut studio = Studio::new();
     let slab = "\"slab\": ( Transform: (translation: (0.0, 0.0, -3.0)), Mesh: Box(size: (3.0, 3.0, 1.0)), Subsurface: (material: Custom(sigma_a: (0.1, 0.1, 0.1), sigma_s: (10.0, 10.0, 10.0))), ScatteringMaps: (samples: 512) ),";

@@ -5,6 +5,7 @@ mod support;
 
 use support::{Studio, difference};
 use tyndall::LightBudget;
+use tyndall_needs::needs;
 
 const SIDE: usize = 24;
 
@@ -44,8 +45,8 @@ fn relative_rmse(found: &[[f32; 3]], truth: &[[f32; 3]]) -> f32 {
     (off / squares(&mut truth.iter().flatten().copied())).sqrt()
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn lights_beyond_the_budget_are_summed_and_still_there() {
     for (lighting, most) in [
         ("LightVolume()", 0.03),
@@ -71,8 +72,8 @@ fn lights_beyond_the_budget_are_summed_and_still_there() {
 }
 
 /// The colour of the light that has its own changes nothing but the sum; that of one that shares makes what they share anew, alone.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn what_shares_is_made_anew_and_nothing_else() {
     const PASSES: [&str; 4] = ["light_cells", "light_network", "scattered_light", "shared_light"];
     for (lighting, alone, shares) in
@@ -104,8 +105,8 @@ fn what_shares_is_made_anew_and_nothing_else() {
 }
 
 /// Twenty lights are more than an adapter can bind textures for where it has but sixteen.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn more_lights_than_textures_are_drawn() {
     let options = tyndall::gpu::GpuOptions { portable: true };
     let mut studio = Studio::with(&options);
@@ -120,8 +121,8 @@ fn more_lights_than_textures_are_drawn() {
 }
 
 /// The light that leaves a mesh is summed exactly.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn meshes_lose_nothing_by_sharing() {
     let scene = "(millimetres_per_unit: 10.0, entities: {
         \"eye\": ( ViewCamera: (eye: (0.0, 0.0, 4.0)) ),

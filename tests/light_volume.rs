@@ -7,6 +7,7 @@ use support::{Studio, middle};
 use tyndall::optics::diffusion::Slab;
 use tyndall::optics::peak::Peak;
 use tyndall::optics::phase::henyey_greenstein;
+use tyndall_needs::needs;
 
 /// A slab 1 mm thick and so wide that its sides do not count, across z, lit from above.
 fn slab(studio: &Studio, voxels: usize, tau: f64, albedo: f64, lighting: &str) -> String {
@@ -32,8 +33,8 @@ fn eye(direction: [f64; 3]) -> String {
     )
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn light_scattered_once_leaves_slabs_as_the_closed_form_says() {
     let cases: serde_json::Value =
         serde_json::from_str(include_str!("truth/single_scatter_radiance.json")).unwrap();
@@ -105,8 +106,8 @@ impl Block {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn light_in_a_block_is_exact_to_its_edges_at_every_resolution() {
     let mut studio = Studio::new();
     let unit = |v: [f64; 3]| v.map(|part| part / v.iter().map(|part| part * part).sum::<f64>().sqrt());
@@ -172,8 +173,8 @@ const GAUSS: [(f64, f64); 6] = [
     (0.966_234_757_101_576, 0.085_662_246_189_585_18),
 ];
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn slabs_reflect_and_transmit_what_they_should() {
     let cases: serde_json::Value = serde_json::from_str(include_str!("truth/slab.json")).unwrap();
     let mut studio = Studio::new();
@@ -237,8 +238,8 @@ fn slabs_reflect_and_transmit_what_they_should() {
 }
 
 /// A ray into a slab whose layers are as thick as the cells of its scattered light.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn light_in_a_column_is_what_its_twin_in_64_bits_says() {
     const CELLS: usize = 32;
     let mut studio = Studio::new();
@@ -327,8 +328,8 @@ fn depths_on_a_floor(studio: &mut Studio, voxels: usize) -> Vec<f64> {
 }
 
 /// Half the voxel leaves a quarter of the error of the light that goes straight through.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn direct_light_is_of_second_order_in_the_voxel() {
     use std::f64::consts::TAU;
     let mut studio = Studio::new();

@@ -4,6 +4,7 @@
 mod support;
 
 use support::{Studio, difference};
+use tyndall_needs::needs;
 
 /// In the order of [`Runs`].
 const PASSES: [&str; 5] = ["classify", "light_volume", "light_cells", "scattered_light", "summed_light"];
@@ -51,8 +52,8 @@ fn edited(edits: &[(&str, &str)]) -> String {
     })
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn an_edit_reruns_what_depends_on_it_and_nothing_else() {
     let mut studio = studio();
     studio.radiance(SCENE, 24, 24);
@@ -142,8 +143,8 @@ fn an_edit_reruns_what_depends_on_it_and_nothing_else() {
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn shadows_of_meshes_are_drawn_when_one_moves_in_a_light() {
     let mut studio = studio();
     let mut drawn = |edits: &[(&str, &str)]| {
@@ -168,8 +169,8 @@ fn light_held(studio: &Studio) -> Vec<(&'static str, u64)> {
     held.filter(|(name, _)| LIGHT.contains(name)).collect()
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn what_nobody_asks_for_any_more_leaves_the_gpu() {
     let mut studio = studio();
     let [start, end] = [SCENE.find("\"v\": (").unwrap(), SCENE.find("\"m\":").unwrap()];
@@ -202,8 +203,8 @@ fn what_nobody_asks_for_any_more_leaves_the_gpu() {
     assert_eq!(light_held(&studio).iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["light_volume"]);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn volumes_that_do_not_scatter_make_nothing_of_it() {
     for lighting in ["EmissionAbsorption", "Gradient()"] {
         let mut studio = studio();
@@ -214,8 +215,8 @@ fn volumes_that_do_not_scatter_make_nothing_of_it() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn light_takes_eight_bytes_a_voxel_at_most() {
     let mut studio = Studio::new();
     studio.volume("v.raw", [64; 3], |_| 0.5);
@@ -240,8 +241,8 @@ fn light_takes_eight_bytes_a_voxel_at_most() {
 }
 
 /// Whatever was in the scene before, the picture is that of a program that starts with it.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_picture_does_not_depend_on_the_scenes_before_it() {
     let states: Vec<String> = [
         edited(&[]),

@@ -8,6 +8,7 @@ use std::collections::HashSet;
 use std::f64::consts::PI;
 use support::Studio;
 use tyndall::optics::peak::Peak;
+use tyndall_needs::needs;
 
 /// A scene of one volume in parts, each of which a case can replace.
 #[derive(Clone)]
@@ -117,8 +118,8 @@ fn check(cases: &[Case]) {
     assert!(complaints.is_empty(), "{} of {}:\n{}", complaints.len(), cases.len(), complaints.join("\n"));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn any_medium_gives_numbers() {
     let mut cases = Vec::new();
     for g in [-0.999, -0.5, 0.0, 0.5, 0.999] {
@@ -172,8 +173,8 @@ fn any_medium_gives_numbers() {
     check(&cases);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn any_shape_gives_numbers() {
     let mut cases = Vec::new();
     let lights = ["(-0.5, -0.6, -0.7)", "(1.0, 0.0, 0.0)", "(0.0, 1e-4, -1.0)"];
@@ -225,8 +226,8 @@ fn any_shape_gives_numbers() {
     check(&cases);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn light_from_anywhere_gives_numbers() {
     const INSIDE: &str = "\"eye\": ( ViewCamera: (eye: (0.5, 1.0, 1.5), target: (-1.0, 0.0, 0.0)) ),";
     const ON_A_FACE: &str = "\"eye\": ( ViewCamera: (eye: (0.0, 0.0, 4.0), target: (0.5, 0.2, 0.0)) ),";
@@ -368,8 +369,8 @@ impl Furnace {
 
 /// White cubes and slabs, thin and thick, return what they receive and no more: 0.3 % is what 24 views are off by. Where light goes on towards
 /// the eye, what spreads over the sides of the box is lost.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn white_media_never_return_more_than_they_receive() {
     let mut studio = Studio::new();
     let mut all = Vec::new();

@@ -5,6 +5,7 @@ mod support;
 
 use glam::DVec3;
 use support::Studio;
+use tyndall_needs::needs;
 
 /// A soft ball with an opaque core off its centre, turned, and of voxels that are not cubes.
 fn volume(studio: &Studio, lighting: &str) -> String {
@@ -87,8 +88,8 @@ fn worst_spike(studio: &mut Studio, lighting: &str) -> f64 {
     spike(worst)
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_picture_changes_evenly_while_the_light_turns() {
     let mut studio = Studio::new();
     for lighting in ["LightVolume()", "SingleScattering()"] {
@@ -99,8 +100,8 @@ fn a_picture_changes_evenly_while_the_light_turns() {
 
 /// Where light is scattered more to some sides, all that is seen changes faster while the light turns through these, up to three times the
 /// median for light that is scattered just once; but nowhere suddenly.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_medium_that_scatters_forwards_changes_nowhere_suddenly() {
     let mut studio = Studio::new();
     for lighting in ["SingleScattering(g: 0.3)", "LightVolume(g: 0.3)", "LightVolume(g: 0.6)"] {
@@ -110,8 +111,8 @@ fn a_medium_that_scatters_forwards_changes_nowhere_suddenly() {
 }
 
 /// With one axis alone it does not: the tests above can fail.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_picture_jumps_where_only_the_nearest_axis_is_swept() {
     let mut studio = Studio::new();
     let jump = worst_jump(&mut studio, "LightVolume(blend: false)", 60);

@@ -5,6 +5,7 @@ mod support;
 
 use support::{Studio, difference, middle};
 use tyndall::gpu::GpuOptions;
+use tyndall_needs::needs;
 
 /// A camera that looks along -z onto the origin, orthographic, from `z` scene units in front.
 fn camera(z: f32, height: f32) -> String {
@@ -24,8 +25,8 @@ fn constant(studio: &Studio, sigma: f32) -> String {
     )
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_constant_volume_absorbs_exponentially_from_every_side() {
     let mut studio = Studio::new();
     let volume = constant(&studio, 0.3);
@@ -62,8 +63,8 @@ fn a_constant_volume_absorbs_exponentially_from_every_side() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_scenes_unit_and_the_volumes_scale_count() {
     let mut studio = Studio::new();
     let volume = constant(&studio, 0.3);
@@ -82,8 +83,8 @@ mod segments {
 
     const VOXELS: usize = 1024;
 
+    #[needs(gpu)]
     #[test]
-    #[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
     fn hold_to_a_thousandth_and_at_an_eighth_of_the_step_to_a_ten_thousandth() {
         let cases: serde_json::Value = serde_json::from_str(include_str!("truth/ea_segments.json")).unwrap();
         let mut studio = Studio::new();
@@ -162,8 +163,8 @@ mod segments {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_error_falls_with_the_square_of_the_step() {
     let mut studio = Studio::new();
     studio.volume("ramp.raw", [1, 1, 16], |[_, _, z]| z as f32 / 15.0);
@@ -204,8 +205,8 @@ fn blob(studio: &Studio, lighting: &str, ray_cast: &str) -> String {
     )
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn leaping_over_empty_bricks_changes_nothing() {
     let mut studio = Studio::new();
     for lighting in ["EmissionAbsorption", "Gradient()"] {
@@ -217,8 +218,8 @@ fn leaping_over_empty_bricks_changes_nothing() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_portable_variant_draws_the_same() {
     let scene = |studio: &Studio| blob(studio, "Gradient()", "step: 0.7");
     let mut full = Studio::new();
@@ -230,8 +231,8 @@ fn the_portable_variant_draws_the_same() {
     assert!(difference(&seen, &expected) < 1e-4, "{}", difference(&seen, &expected));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn meshes_in_front_behind_inside_and_across_a_volume_hide_the_right_part() {
     let mut studio = Studio::new();
     let volume = constant(&studio, 0.3);
@@ -269,8 +270,8 @@ fn meshes_in_front_behind_inside_and_across_a_volume_hide_the_right_part() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn volumes_that_overlap_add_their_extinction_and_mix_their_light() {
     let mut studio = Studio::new();
     studio.volume("a.raw", [2, 2, 2], |_| 0.5);
@@ -306,8 +307,8 @@ fn volumes_that_overlap_add_their_extinction_and_mix_their_light() {
     assert!((seen[2] - exact[2]).abs() < 1e-5, "{seen:?}, expected {exact:?}");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_camera_inside_sees_only_what_is_in_front_of_it() {
     let mut studio = Studio::new();
     let volume = constant(&studio, 0.3);
@@ -321,8 +322,8 @@ fn a_camera_inside_sees_only_what_is_in_front_of_it() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn samples_that_are_not_finite_are_transparent_and_nothing_else_is() {
     let mut studio = Studio::new();
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e35];
@@ -343,8 +344,8 @@ fn samples_that_are_not_finite_are_transparent_and_nothing_else_is() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn every_sample_type_shows_the_same_ramp() {
     let mut studio = Studio::new();
     let ramp: Vec<f32> = (0..16).map(|z| z as f32 / 15.0).collect();
@@ -383,8 +384,8 @@ fn every_sample_type_shows_the_same_ramp() {
     assert!(seen[0] > 0.1);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_gradient_lit_ball_is_shaded_as_a_ball() {
     let mut studio = Studio::new();
     let n = 64;
@@ -413,8 +414,8 @@ fn a_gradient_lit_ball_is_shaded_as_a_ball() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_volume_beyond_the_adapters_limit_is_refused_with_the_limit_and_a_mend() {
     let mut studio = Studio::new();
     let limit = studio.app.world().resource::<tyndall::gpu::Gpu>().device.limits().max_texture_dimension_3d;

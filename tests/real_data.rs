@@ -8,6 +8,7 @@ use support::Studio;
 use tyndall::render;
 use tyndall::scene::Severity;
 use tyndall::sources::{Endian, RawLayout, SampleFormat, Selection, read_raw, read_volume};
+use tyndall_needs::needs;
 
 fn data(path: &str) -> PathBuf {
     Path::new(&std::env::var("TYNDALL_DATA").unwrap()).join(path)
@@ -51,8 +52,8 @@ fn try_draw(studio: &mut Studio, scene: &str) -> Result<Vec<[f32; 3]>, Vec<Strin
 const LIGHT: &str =
     "\"sun\": ( DirectionalLight: (direction: (-0.4, -0.7, -1.0), irradiance: (3.0, 3.0, 3.0)) ),";
 
+#[needs(gpu, data)]
 #[test]
-#[cfg_attr(not(all(tyndall_gpu, tyndall_data)), ignore = "needs a graphics adapter and TYNDALL_DATA")]
 fn every_mesh_is_drawn_or_refused_with_a_reason_and_its_place() {
     let mut refused = 0;
     let all: Vec<PathBuf> = files("meshes", ".obj").into_iter().chain(files("meshes/odd", ".obj")).collect();
@@ -98,8 +99,8 @@ fn described(path: &Path) -> String {
     )
 }
 
+#[needs(gpu, data)]
 #[test]
-#[cfg_attr(not(all(tyndall_gpu, tyndall_data)), ignore = "needs a graphics adapter and TYNDALL_DATA")]
 fn every_volume_is_drawn() {
     let all = files("volumes", ".raw.gz");
     assert!(all.len() >= 15, "{}", all.len());
@@ -116,8 +117,8 @@ fn every_volume_is_drawn() {
     }
 }
 
+#[needs(gpu, data)]
 #[test]
-#[cfg_attr(not(all(tyndall_gpu, tyndall_data)), ignore = "needs a graphics adapter and TYNDALL_DATA")]
 fn lying_volumes_are_refused_and_constant_ones_are_drawn() {
     let draw = |name: &str, size: &str| {
         let volume = data("volumes/odd").join(name);
@@ -136,8 +137,8 @@ fn lying_volumes_are_refused_and_constant_ones_are_drawn() {
 }
 
 /// Bars from the low corner along x (value 85), y (170) and z (255): each end is where its axis says, at the spacing written.
+#[needs(gpu, data)]
 #[test]
-#[cfg_attr(not(all(tyndall_gpu, tyndall_data)), ignore = "needs a graphics adapter and TYNDALL_DATA")]
 fn the_axes_of_a_volume_are_those_of_the_scene() {
     let mut studio = Studio::new();
     let volume = data("volumes/axes_test_96x64x48_uint8.raw.gz");
@@ -312,8 +313,8 @@ const FORMATS: &[(&str, Outcome)] = &[
     ),
 ];
 
+#[needs(data)]
 #[test]
-#[cfg_attr(not(tyndall_data), ignore = "needs TYNDALL_DATA")]
 fn every_format_loads_or_says_why_not() {
     let folders = ["formats", "formats/dicom", "formats/niftirs", "formats/nrrdjl", "formats/pynrrd", "odd"];
     let mut all: Vec<String> = Vec::new();
@@ -358,8 +359,8 @@ fn every_format_loads_or_says_why_not() {
 }
 
 /// The same voxels through a header and as bare samples.
+#[needs(data)]
 #[test]
-#[cfg_attr(not(tyndall_data), ignore = "needs TYNDALL_DATA")]
 fn headers_give_what_their_bare_samples_give() {
     let layout =
         |size, format, endian| RawLayout { size, format, endian, spacing: glam::Vec3::ONE, skip_bytes: 0 };

@@ -14,6 +14,7 @@ use std::path::Path;
 use tyndall::prelude::*;
 use tyndall::render::{Pixels, render_what_is_there};
 use tyndall::scene::Reload;
+use tyndall_needs::needs;
 
 struct Shaders<'a> {
     folder: &'a Path,
@@ -65,8 +66,8 @@ fn is_near(a: [f32; 3], b: [f32; 3]) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-4)
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_shader_and_what_it_imports_are_followed_and_one_that_does_not_compile_changes_nothing() {
     let name = "a_shader_and_what_it_imports_are_followed_and_one_that_does_not_compile_changes_nothing";
     with_own_shaders(name, |folder| {
@@ -109,8 +110,8 @@ fn a_shader_and_what_it_imports_are_followed_and_one_that_does_not_compile_chang
     });
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn what_a_shader_made_is_made_again_and_nothing_before_it() {
     with_own_shaders("what_a_shader_made_is_made_again_and_nothing_before_it", |folder| {
         let look = "Subsurface: (material: Preset(\"marble\")), ScatteringMaps: (progressive: false)";

@@ -4,6 +4,7 @@
 mod support;
 
 use support::Studio;
+use tyndall_needs::needs;
 
 const LIGHT: &str = "\"sun\": ( DirectionalLight: () ),";
 const MESH: &str = "\"ball\": ( Mesh: Sphere(subdivisions: 2) ),";
@@ -18,8 +19,8 @@ fn passes(entities: &str) -> (Vec<&'static str>, Vec<&'static str>, Vec<&'static
     (names, report.pipelines.clone(), report.gpu_bytes.keys().copied().collect())
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn passes_that_no_entity_needs_neither_run_nor_exist() {
     let (mesh, pipelines, held) = passes(&format!("{LIGHT} {MESH}"));
     assert_eq!(mesh, ["surface", "upload_meshes"]);
@@ -39,8 +40,8 @@ fn passes_that_no_entity_needs_neither_run_nor_exist() {
     assert_eq!((nothing, pipelines), (vec!["surface"], vec![]));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn drawing_again_uploads_and_classifies_nothing_and_an_edit_only_what_it_touches() {
     let mut studio = Studio::new();
     studio.volume("v.raw", [4, 4, 4], |[x, ..]| x as f32);
@@ -58,8 +59,8 @@ fn drawing_again_uploads_and_classifies_nothing_and_an_edit_only_what_it_touches
     assert_eq!(studio.report().pipelines, ["surface", "raycast"]);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn samples_are_counted_and_a_volume_is_held_once_in_a_narrow_format() {
     let mut studio = Studio::new();
     studio.file("u8.raw", &[200; 16 * 16 * 16]);

@@ -15,6 +15,7 @@ use tyndall::optics::dipole::{DirectionalDipole, Entry, Exit, StandardDipole};
 use tyndall::optics::fresnel::{refract, transmittance};
 use tyndall::optics::medium::Medium;
 use tyndall::optics::moments::Boundary;
+use tyndall_needs::needs;
 
 /// A half space that truth knows the reflectance of.
 struct HalfSpace {
@@ -122,20 +123,20 @@ fn compare(model: &str, truth: &str, tolerance: f64, maps: &str) {
     assert!(misses.is_empty(), "{} beyond {} %:\n{}", misses.len(), 100.0 * tolerance, misses.join("\n"));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_slab_reflects_what_the_directional_dipole_says() {
     compare("DirectionalDipole", "directional_clamped", 0.01, "");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_slab_reflects_what_a_half_space_really_does() {
     compare("CalibratedDipole", "exact", 0.01, "");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_slab_reflects_what_the_standard_dipole_says() {
     compare("StandardDipole", "std_dipole", 0.005, "");
 }
@@ -169,14 +170,14 @@ fn compare_grazing(angles: &[f64]) {
     assert!(misses.is_empty(), "{}", misses.join("\n"));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_slab_in_oblique_light_reflects_what_the_model_says() {
     compare_grazing(&[60.0, 75.0]);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_slab_in_grazing_light_reflects_what_the_model_says() {
     compare_grazing(&[80.0, 85.0, 88.0]);
 }
@@ -257,8 +258,8 @@ fn beam(model: &str, degrees: f64, maps: &str) {
     assert!(misses.is_empty(), "{}", misses.join("\n"));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn around_a_thin_beam_light_falls_off_as_the_models_say() {
     beam("DirectionalDipole", 0.0, "samples: 1024");
     beam("StandardDipole", 0.0, "samples: 1024");
@@ -295,8 +296,8 @@ fn of_sphere(medium: &Medium, calibrated: bool, at: DVec3) -> f64 {
 }
 
 /// On a curved surface, from where the light is overhead to where it does not reach.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_sphere_in_light_from_the_side_shines_as_the_models_say() {
     const SIZE: u32 = 81;
     let mut studio = Studio::new();

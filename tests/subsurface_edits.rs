@@ -8,6 +8,7 @@ mod translucent;
 use support::{Studio, difference};
 use translucent::{Pixels, grey, mean, sun};
 use tyndall::Refinement;
+use tyndall_needs::needs;
 
 /// What came of the passes of translucent meshes so far, in the order of [`PASSES`].
 const PASSES: [&str; 4] = ["surface_points", "light_gbuffer", "scattered_radiosity", "combine"];
@@ -27,8 +28,8 @@ fn medium() -> String {
 
 const MAPS: &str = "ScatteringMaps: (progressive: false)";
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn meshes_beside_the_light_and_behind_the_body_change_nothing() {
     let mut studio = Studio::new();
     let scene = |more: &str| {
@@ -60,8 +61,8 @@ fn meshes_beside_the_light_and_behind_the_body_change_nothing() {
     assert_eq!(difference(&alone, &again), 0.0);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn an_edit_reruns_what_depends_on_it_and_nothing_else() {
     let mut studio = Studio::new();
     let scene = "(entities: {
@@ -108,8 +109,8 @@ fn an_edit_reruns_what_depends_on_it_and_nothing_else() {
 }
 
 /// A material of the same mean free path changes nothing but how light spreads; the points of the surface stay.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn another_material_scatters_anew() {
     let mut studio = Studio::new();
     let scene = |sigma_a: f64| {
@@ -126,8 +127,8 @@ fn another_material_scatters_anew() {
     assert!(mean(&bright)[0] > 2.0 * mean(&dark)[0]);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn what_leaves_the_scene_leaves_the_gpu() {
     let mut studio = Studio::new();
     let scene = |what: &str| {
@@ -144,8 +145,8 @@ fn what_leaves_the_scene_leaves_the_gpu() {
 }
 
 /// Whatever was in the scene before, the picture is that of a program that starts with it.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_picture_does_not_depend_on_the_scenes_before_it() {
     let lamp = |name: &str, direction: &str| {
         format!("{name:?}: ( DirectionalLight: (direction: {direction}, irradiance: (1.0, 2.0, 0.5)) ),")
@@ -201,8 +202,8 @@ fn a_picture_does_not_depend_on_the_scenes_before_it() {
 
 /// While a picture is to follow a hand, light that is to be found anew is found coarsely; what is there in full stays, and is what there is
 /// again afterwards.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn coarse_light_is_for_the_moment() {
     let mut studio = Studio::new();
     let scene = |degrees: f64| {
@@ -231,8 +232,8 @@ fn coarse_light_is_for_the_moment() {
     assert!((brightness - 1.0).abs() < 0.05, "{brightness}");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn one_that_no_longer_averages_shows_its_first_samples_again() {
     let mut studio = Studio::new();
     let scene = |progressive: bool| {

@@ -9,6 +9,7 @@ use std::path::Path;
 use support::Studio;
 use translucent::grey;
 use tyndall::{Picture, render};
+use tyndall_needs::needs;
 
 const MODELS: [&str; 3] = ["CalibratedDipole", "DirectionalDipole", "StandardDipole"];
 
@@ -39,8 +40,8 @@ fn sphere(material: &str, model: &str) -> String {
     )
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn any_medium_gives_numbers() {
     let mut scenes = Vec::new();
     let coefficients = [0.0, 1e-6, 1e-3, 1.0, 1e3, 1e6];
@@ -59,8 +60,8 @@ fn any_medium_gives_numbers() {
     check(&scenes);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn any_index_of_refraction_gives_light() {
     let mut scenes = Vec::new();
     for eta in [0.5, 0.75, 0.999_999, 1.0, 1.000_001, 1.01, 1.33, 2.0, 2.5, 2.9, 3.0] {
@@ -71,8 +72,8 @@ fn any_index_of_refraction_gives_light() {
     check(&scenes);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn any_scale_gives_light() {
     let mut scenes = Vec::new();
     for scale in [1e-6, 1e-3, 1e3, 1e6] {
@@ -96,8 +97,8 @@ fn any_scale_gives_light() {
     check(&scenes);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn light_from_anywhere_gives_numbers() {
     let mut scenes = Vec::new();
     let directions = [
@@ -149,8 +150,8 @@ const ODD: [(&str, &str); 7] = [
     ),
 ];
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn any_mesh_gives_numbers() {
     let folder = tempfile::tempdir().unwrap();
     let mut scenes = Vec::new();
@@ -167,8 +168,8 @@ fn any_mesh_gives_numbers() {
 }
 
 /// Without any triangle that has an area there is an error that says so, and the program can go on.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn an_empty_mesh_is_refused() {
     let mut studio = Studio::new();
     let whole = sphere("Preset(\"cream\")", MODELS[0]);
@@ -208,8 +209,8 @@ fn try_file(studio: &mut Studio, mesh: &Path) -> bool {
     }
 }
 
+#[needs(gpu, data)]
 #[test]
-#[cfg_attr(not(all(tyndall_gpu, tyndall_data)), ignore = "needs a graphics adapter and TYNDALL_DATA")]
 fn the_odd_files_give_numbers_or_reasons() {
     let folder = Path::new(&std::env::var("TYNDALL_DATA").unwrap()).join("meshes/odd");
     let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();

@@ -20,6 +20,7 @@ use tyndall::components::{
 };
 use tyndall::cpu::ScatteredPoint;
 use tyndall::report::PassRecord;
+use tyndall_needs::needs;
 
 fn points_against_truth(subject: &mut Subject, probes: usize) {
     let truth = subject.truth(probes, 1024);
@@ -41,20 +42,20 @@ fn points_against_truth(subject: &mut Subject, probes: usize) {
     assert!(many < one / 2.0, "{many} of sixteen sets, {one} of one");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn points_of_a_sphere_send_out_what_the_sum_over_its_lit_side_says() {
     points_against_truth(&mut Subject::sphere(5), 48);
 }
 
+#[needs(gpu, data)]
 #[test]
-#[cfg_attr(not(all(tyndall_gpu, tyndall_data)), ignore = "needs a graphics adapter and TYNDALL_DATA")]
 fn points_of_a_bunny_send_out_what_the_sum_over_its_lit_side_says() {
     points_against_truth(&mut Subject::bunny(), 48);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn every_model_is_summed_rightly() {
     let mut subject = Subject::sphere(4);
     for model in [DipoleModel::StandardDipole, DipoleModel::DirectionalDipole] {
@@ -67,8 +68,8 @@ fn every_model_is_summed_rightly() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn maps_hold_what_the_sum_over_the_lit_side_says() {
     let mut subject = Subject::sphere(5);
     let truth = subject.truth(40, 512);
@@ -77,8 +78,8 @@ fn maps_hold_what_the_sum_over_the_lit_side_says() {
     assert!(error < 0.03, "{error}");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn more_cameras_and_more_texels_change_the_mean_by_little() {
     let mut subject = Subject::sphere(4);
     let mut steps = |settings: &[(u32, u32)]| {
@@ -95,8 +96,8 @@ fn more_cameras_and_more_texels_change_the_mean_by_little() {
 
 /// One disc serves all points, so they err together, and the mean of many probes is no better than one of them. Its density falls as
 /// light does in the medium, not as the kernel, which is why this takes a medium in which light gets through the whole body.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn published_discs_converge_where_they_cover_the_kernel() {
     let mut subject = Subject::new("Sphere(subdivisions: 4)", &grey(0.1, 3.0, 0.0, 1.3), 1.0);
     let truth = subject.truth(40, 512);
@@ -120,8 +121,8 @@ fn published_discs_converge_where_they_cover_the_kernel() {
     assert!(more.abs() < 0.005, "{more}");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn only_texels_that_points_want_are_evaluated_and_cameras_all_around_see_every_point() {
     let mut subject = Subject::sphere(4);
     let points = subject.points().len() as u64;
@@ -143,8 +144,8 @@ fn only_texels_that_points_want_are_evaluated_and_cameras_all_around_see_every_p
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn what_a_single_camera_does_not_see_is_evaluated_at_its_points() {
     let mut subject = Subject::sphere(4);
     // So many that the dimmest points are not all noise.
@@ -187,8 +188,8 @@ fn what_a_single_camera_does_not_see_is_evaluated_at_its_points() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_camera_by_hand_is_one_more() {
     let mut subject = Subject::sphere(3);
     subject.world().spawn(ScatteringCamera { target: "mesh".into(), direction: Vec3::NEG_Z });
@@ -198,8 +199,8 @@ fn a_camera_by_hand_is_one_more() {
     assert_eq!(subject.cameras(), (6, 5));
 }
 
+#[needs(gpu, data)]
 #[test]
-#[cfg_attr(not(all(tyndall_gpu, tyndall_data)), ignore = "needs a graphics adapter and TYNDALL_DATA")]
 fn hollows_that_no_camera_looks_into_are_not_dark_and_nothing_leaks_from_one_surface_to_another() {
     let mut subject = Subject::bunny();
     subject.refine(16, 16);
@@ -255,8 +256,8 @@ fn boxes(all: &[[f64; 3]]) -> String {
     text
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_slab_in_the_shadow_of_another_takes_nothing_from_its_texels() {
     let studio = Studio::new();
     studio.file("slabs.obj", boxes(&[[1.0, 0.1, 0.2], [0.95, -0.1, 0.0]]).as_bytes());
@@ -316,8 +317,8 @@ fn variances(subject: &mut Subject, maps: &ScatteringMaps, reference: &[DVec3]) 
     })
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn sets_of_samples_average_into_less_noise() {
     let mut subject = Subject::sphere(3);
     subject.refine(64, 64);
@@ -335,8 +336,8 @@ fn sets_of_samples_average_into_less_noise() {
     assert!(in_maps[2] < in_maps[1], "{in_maps:?}");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn results_are_the_same_every_time() {
     let run = |maps: &ScatteringMaps| {
         let mut subject = Subject::sphere(3);
@@ -363,8 +364,8 @@ fn ran(passes: &BTreeMap<&'static str, PassRecord>) -> Vec<(&'static str, u64)> 
         .collect()
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_still_scene_is_refined_until_the_sets_that_are_wanted() {
     let few = ScatteringMaps { samples: 8, ..Default::default() };
     let in_maps = ScatteringMaps { samples: 8, ..maps(3, 32) };
@@ -396,8 +397,8 @@ fn a_still_scene_is_refined_until_the_sets_that_are_wanted() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn cameras_are_children_of_the_mesh_while_maps_are_made() {
     let mut subject = Subject::sphere(2);
     assert_eq!(subject.cameras(), (0, 0));

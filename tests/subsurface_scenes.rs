@@ -8,6 +8,7 @@ mod translucent;
 use glam::DVec3;
 use support::{Studio, difference};
 use translucent::{Pixels, from_above, grey, look, mean, sun};
+use tyndall_needs::needs;
 
 /// A medium of mean free path 0.1 mm in which light dies out over 0.2 mm.
 fn medium() -> String {
@@ -16,8 +17,8 @@ fn medium() -> String {
 
 const MAPS: &str = "ScatteringMaps: (progressive: false)";
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_box_in_the_light_darkens_what_lies_in_its_shadow() {
     const WIDTH: u32 = 65;
     let mut studio = Studio::new();
@@ -97,16 +98,16 @@ fn invariances(name: &str, radius: f64, body: &dyn Fn(f64) -> String) {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_sphere_is_as_bright_whatever_the_samples_pixels_and_units_are() {
     invariances("sphere", 10.0, &|scale| {
         format!("Mesh: Sphere(radius: {:?}, subdivisions: 4)", 10.0 * scale)
     });
 }
 
+#[needs(gpu, data)]
 #[test]
-#[cfg_attr(not(all(tyndall_gpu, tyndall_data)), ignore = "needs a graphics adapter and TYNDALL_DATA")]
 fn the_bunny_is_as_bright_whatever_the_samples_pixels_and_units_are() {
     let data = std::env::var("TYNDALL_DATA").unwrap();
     invariances("bunny", 10.0, &|scale| {
@@ -119,8 +120,8 @@ fn the_bunny_is_as_bright_whatever_the_samples_pixels_and_units_are() {
     });
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn lights_add_up_and_their_irradiance_is_a_factor() {
     let mut studio = Studio::new();
     let light = |name: &str, direction: &str, e: [f64; 3]| {
@@ -151,8 +152,8 @@ fn lights_add_up_and_their_irradiance_is_a_factor() {
 const LOCAL: &str =
     "diffuse: (0.8, 0.7, 0.5), specular: (0.1, 0.2, 0.3), shininess: 20.0, ambient: (0.01, 0.0, 0.0)";
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn local_shading_is_the_phong_beside_the_medium_and_nothing_else_exists() {
     let scene = |head: &str, looks: &str| {
         format!("({head} entities: {{ {} \"ball\": ( Mesh: Sphere(subdivisions: 3), {looks} ) }})", sun(40.0))
@@ -183,8 +184,8 @@ fn local_shading_is_the_phong_beside_the_medium_and_nothing_else_exists() {
     assert_eq!(held, ["meshes", "surface"]);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_highlight_is_added_as_blinn_and_phong_say() {
     const SIZE: u32 = 33;
     let mut studio = Studio::new();
@@ -232,8 +233,8 @@ fn a_highlight_is_added_as_blinn_and_phong_say() {
 }
 
 /// So many lights that what each sends out cannot be kept apart: they share one layer, with the same result.
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn very_many_lights_share_a_layer_and_add_up_all_the_same() {
     let mut studio = Studio::new();
     // As few as so many lights get.

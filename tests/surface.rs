@@ -4,6 +4,7 @@
 mod support;
 
 use support::{Studio, middle};
+use tyndall_needs::needs;
 
 const EYE: &str = "\"eye\": ( ViewCamera: (eye: (0.0, 0.0, 5.0), projection: Orthographic(height: 0.1)) ),";
 
@@ -14,8 +15,8 @@ fn plane(phong: &str) -> String {
     )
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn lights_add_up_and_a_white_plane_facing_irradiance_pi_is_white() {
     let mut studio = Studio::new();
     let light = |name: &str, direction: &str, e: f32| {
@@ -44,8 +45,8 @@ fn lights_add_up_and_a_white_plane_facing_irradiance_pi_is_white() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_highlight_keeps_its_energy_whatever_the_shininess() {
     let mut studio = Studio::new();
     for shininess in [0.0f32, 8.0, 100.0] {
@@ -59,8 +60,8 @@ fn a_highlight_keeps_its_energy_whatever_the_shininess() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn more_lights_than_fit_at_first_make_a_new_pipeline_and_all_count() {
     let mut studio = Studio::new();
     for count in [3usize, 40] {
@@ -74,8 +75,8 @@ fn more_lights_than_fit_at_first_make_a_new_pipeline_and_all_count() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_nearest_surface_wins_and_both_sides_are_lit() {
     let mut studio = Studio::new();
     let glow = |name: &str, z: f32, tilt: f32, value: f32| {
@@ -98,8 +99,8 @@ fn the_nearest_surface_wins_and_both_sides_are_lit() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_picture_is_the_same_at_every_scale() {
     let mut studio = Studio::new();
     let mut seen = |scale: f32| {

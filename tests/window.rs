@@ -14,6 +14,7 @@ use tyndall::scene::{Edits, LiveScene, Override, SceneEntities, Side};
 use tyndall::ui::{Log, OpenPanels, Totals};
 use tyndall::window::{Frame, Painter, Session, SessionOptions};
 use tyndall::{Comparison, Split, TyndallPlugins, View};
+use tyndall_needs::needs;
 
 const BALL: &str = r#"(
     background: (0.1, 0.1, 0.1),
@@ -198,8 +199,8 @@ fn is_red([red, green, blue]: [f32; 3]) -> bool {
     red > 100.0 && green < 60.0 && blue < 60.0
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn nothing_is_drawn_while_nothing_changes() {
     let mut screen = Screen::new(BALL);
     screen.settle();
@@ -220,8 +221,8 @@ fn nothing_is_drawn_while_nothing_changes() {
     assert_eq!(screen.pictures(), pictures);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn what_changes_in_the_file_is_seen_and_what_is_broken_is_told() {
     let mut screen = Screen::new(BALL);
     screen.settle();
@@ -247,8 +248,8 @@ fn what_changes_in_the_file_is_seen_and_what_is_broken_is_told() {
     assert!(is_red(screen.colour(0.0, 0.0)));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn edits_in_the_world_are_drawn_once() {
     let mut screen = Screen::new(BALL);
     screen.settle();
@@ -262,8 +263,8 @@ fn edits_in_the_world_are_drawn_once() {
     assert!((1..=2).contains(&(screen.pictures() - before)), "{}", screen.pictures() - before);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn edits_are_undone_done_again_and_saved_by_keys() {
     let mut screen = Screen::new(BALL);
     screen.settle();
@@ -288,8 +289,8 @@ fn edits_are_undone_done_again_and_saved_by_keys() {
     assert_eq!(screen.text(), BALL);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn an_edit_survives_what_others_save_beside_it_and_conflicts_wait() {
     let mut screen = Screen::new(BALL);
     screen.settle();
@@ -320,8 +321,8 @@ fn an_edit_survives_what_others_save_beside_it_and_conflicts_wait() {
     assert_eq!(screen.text(), saved.replace("(0.0, 0.0, 0.8)", "(0.0, 0.8, 0.0)"));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_scene_that_is_mended_can_be_edited() {
     let mut screen = Screen::new("(entities: { \"ball\": ( Mesh: Spere() ) })");
     screen.settle();
@@ -332,8 +333,8 @@ fn a_scene_that_is_mended_can_be_edited() {
     assert!(screen.colour(0.0, 0.0)[2] > 100.0);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn overrides_are_edits_that_can_be_saved() {
     let set = "ball.Phong.diffuse=(0.0, 0.0, 0.8)".parse().unwrap();
     let mut screen = Screen::overridden(BALL, &[set]);
@@ -349,8 +350,8 @@ fn overrides_are_edits_that_can_be_saved() {
     assert_eq!(screen.text(), others.replace("(0.8, 0.0, 0.0)", "(0.0, 0.0, 0.8)"));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn nobody_leaves_unsaved_edits_unasked() {
     let mut screen = Screen::new(BALL);
     screen.settle();
@@ -364,8 +365,8 @@ fn nobody_leaves_unsaved_edits_unasked() {
     assert!(screen.session.may_quit());
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_camera_is_turned_and_survives_reloads() {
     let mut screen = Screen::new(BALL);
     screen.settle();
@@ -391,8 +392,8 @@ fn the_camera_is_turned_and_survives_reloads() {
     assert_eq!((reset.eye.y, home.eye.y), (3.0, 0.0));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_drag_draws_coarsely_where_it_must_and_in_full_when_it_ends() {
     let mut screen = Screen::new(BALL);
     screen.settle();
@@ -415,8 +416,8 @@ fn a_drag_draws_coarsely_where_it_must_and_in_full_when_it_ends() {
     assert_eq!((after.pixels, after.is_coarse), (after.room, false));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn translucent_meshes_are_refined_until_that_is_done() {
     let mut screen = Screen::new(WAX);
     screen.settle();
@@ -434,8 +435,8 @@ fn translucent_meshes_are_refined_until_that_is_done() {
     );
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_comparison_shows_both_shadings_and_computes_nothing_twice() {
     let mut screen = Screen::new(WAX);
     screen.settle();
@@ -456,8 +457,8 @@ fn a_comparison_shows_both_shadings_and_computes_nothing_twice() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn screenshots_are_of_the_full_picture() {
     let mut screen = Screen::new(BALL);
     screen.settle();
@@ -480,8 +481,8 @@ fn screenshots_are_of_the_full_picture() {
     assert!((radiance[0] - 0.8 * 3.0 / std::f32::consts::PI).abs() < 0.02, "{radiance:?}");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn any_size_of_window_is_drawn() {
     let mut screen = Screen::new(WAX);
     for (width, height) in [(1.0, 1.0), (3.0, 2000.0), (640.0, 1.0), (640.0, 400.0)] {
@@ -499,8 +500,8 @@ fn any_size_of_window_is_drawn() {
     assert!(screen.colour(0.0, 0.0)[0] > 60.0, "{:?}", screen.colour(0.0, 0.0));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_lost_device_takes_nothing_with_it() {
     let mut screen = Screen::new(BALL);
     screen.settle();
@@ -524,8 +525,8 @@ fn a_lost_device_takes_nothing_with_it() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_hundred_edits_leave_nothing_behind() {
     let mut screen = Screen::new(BALL);
     screen.settle();

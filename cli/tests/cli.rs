@@ -6,6 +6,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use tyndall_needs::needs;
 
 /// A folder to run in.
 struct Place(tempfile::TempDir);
@@ -232,8 +233,8 @@ fn a_new_plugin_has_a_name_that_cargo_takes() {
     place.run(1, &["check", "bob/scene.ron"]).says("there is no component `Bob`");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn info_tells_what_the_machine_draws_with() {
     let place = Place::new();
     let facts = place.run(0, &["info", "--json"]).json();
@@ -242,8 +243,8 @@ fn info_tells_what_the_machine_draws_with() {
     assert!(place.run(0, &["info"]).data.contains("backend: "));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_new_scene_is_drawn() {
     let place = Place::new();
     place.run(0, &["new", "mine"]);
@@ -254,8 +255,8 @@ fn a_new_scene_is_drawn() {
     assert!(colours.len() > 50, "only {} colours", colours.len());
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn frames_differ_as_the_scene_moves_and_stats_say_what_ran() {
     let place = Place::with_scene(BALL);
     let arguments =
@@ -272,8 +273,8 @@ fn frames_differ_as_the_scene_moves_and_stats_say_what_ran() {
     assert!(stats["passes"]["raycast"].is_null(), "no volume, no ray casting: {stats}");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn cameras_and_overrides_change_the_picture() {
     let place = Place::with_scene(BALL);
     let draw = |more: &[&str]| {
@@ -289,8 +290,8 @@ fn cameras_and_overrides_change_the_picture() {
     assert_eq!(first, draw(&["--portable"]), "the portable way is the same picture");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn exr_is_linear_radiance_whatever_the_exposure() {
     let place = Place::with_scene(BALL);
     let draw = |name: &str, exposure: &str| {
@@ -322,8 +323,8 @@ fn exr_is_linear_radiance_whatever_the_exposure() {
     assert_eq!(dark.get_pixel(0, 0).0[2], 255);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_failed_render_leaves_the_old_picture_and_nothing_else() {
     let place = Place::with_scene("(entities: { \"ball\": ( Mesh: File(\"missing.obj\") ) })");
     place.write("out.png", "old");
@@ -340,9 +341,9 @@ fn a_failed_render_leaves_the_old_picture_and_nothing_else() {
     assert_eq!(place.names(), ["fine.ron", "folder.png", "out.png", "scene.ron"]);
 }
 
+#[needs(gpu)]
 #[test]
 #[cfg(target_os = "linux")]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_full_disk_is_the_machines_fault_and_a_link_stays_a_link() {
     let place = Place::with_scene(BALL);
     std::os::unix::fs::symlink("/dev/full", place.path("full.png")).unwrap();

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
+use tyndall_needs::needs;
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{ConnectionExt as _, ImageFormat, InputFocus};
 use x11rb::protocol::xtest::ConnectionExt as _;
@@ -219,9 +220,8 @@ const MIDDLE: (i16, i16) = (450, 300);
 /// Where the bar's left end is, as long as one looks at it from the front.
 const LEFT: (i16, i16) = (220, 300);
 
+#[needs(gpu, display)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
-#[cfg_attr(not(tyndall_display), ignore = "no Xvfb")]
 fn a_scene_is_opened_edited_turned_and_closed() {
     let folder = place();
     let display = Display::new();
@@ -286,9 +286,8 @@ fn a_scene_is_opened_edited_turned_and_closed() {
     assert!(window.contains("900") && window.contains("entities: false"), "{window}");
 }
 
+#[needs(gpu, display)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
-#[cfg_attr(not(tyndall_display), ignore = "no Xvfb")]
 fn a_window_opens_on_what_is_wrong_and_with_what_cannot_be_remembered() {
     let folder = place();
     fs::write(folder.path().join("scene.ron"), "(entities: {").unwrap();
@@ -305,8 +304,8 @@ fn a_window_opens_on_what_is_wrong_and_with_what_cannot_be_remembered() {
     assert!(viewer.program.try_wait().unwrap().is_none());
 }
 
+#[needs(display)]
 #[test]
-#[cfg_attr(not(tyndall_display), ignore = "no Xvfb")]
 fn without_an_adapter_the_machine_is_at_fault() {
     let folder = place();
     let display = Display::new();

@@ -1,12 +1,12 @@
 //! Every file of the test data folder, with what must become of it.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-#![cfg_attr(not(tyndall_data), allow(dead_code, reason = "without the folder the tests are not run"))]
 
 use std::{
     collections::BTreeSet,
     fs,
     path::{Path, PathBuf},
 };
+use tyndall_needs::needs;
 
 use glam::Vec3;
 
@@ -131,20 +131,20 @@ fn check_meshes(folder: &str, expected: &[(&str, Outcome)]) {
     }
 }
 
+#[needs(data)]
 #[test]
-#[cfg_attr(not(tyndall_data), ignore = "set TYNDALL_DATA to the test data folder")]
 fn odd_meshes_load_or_say_why_not() {
     check_meshes("meshes/odd", ODD_MESHES);
 }
 
+#[needs(data)]
 #[test]
-#[cfg_attr(not(tyndall_data), ignore = "set TYNDALL_DATA to the test data folder")]
 fn real_meshes_load_whole() {
     check_meshes("meshes", MESHES);
 }
 
+#[needs(data)]
 #[test]
-#[cfg_attr(not(tyndall_data), ignore = "set TYNDALL_DATA to the test data folder")]
 fn a_concave_ring_keeps_its_hole() {
     let statistics = read_obj(&data("meshes/odd").join("assimp_concave_polygon.obj")).unwrap().statistics();
     // The area that Newell's formula gives for the outline, which a fan around its first corner exceeds by far.
@@ -190,8 +190,8 @@ const VOLUME_RANGES: &[(&str, (f32, f32))] = &[
     ("tooth_103x94x161_uint16_be.raw.gz", (0.0, 1300.0)),
 ];
 
+#[needs(data)]
 #[test]
-#[cfg_attr(not(tyndall_data), ignore = "set TYNDALL_DATA to the test data folder")]
 fn real_volumes_have_the_ranges_their_manifest_states() {
     let listed: BTreeSet<_> = VOLUME_RANGES.iter().map(|(name, _)| (*name).to_owned()).collect();
     assert_eq!(names("volumes", ".raw.gz"), listed);
@@ -204,8 +204,8 @@ fn real_volumes_have_the_ranges_their_manifest_states() {
     assert_eq!(ramp.bricks.ranges[..4], [[1.0, 64.0], [56.0, 128.0], [120.0, 192.0], [184.0, 248.0]]);
 }
 
+#[needs(data)]
 #[test]
-#[cfg_attr(not(tyndall_data), ignore = "set TYNDALL_DATA to the test data folder")]
 fn odd_volumes_load_or_say_why_not() {
     let read = |name: &str, side| {
         let (size, spacing) = ([side; 3], Vec3::ONE);

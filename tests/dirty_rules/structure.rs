@@ -8,6 +8,7 @@ use crate::stage::Stage;
 use crate::table::Trial;
 use tyndall::prelude::*;
 use tyndall::scene::SceneEntities;
+use tyndall_needs::needs;
 
 /// A change of what there is in the scene of [`in_company`](crate::in_company).
 #[derive(Debug)]
@@ -94,8 +95,8 @@ impl Edit {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn what_comes_and_goes_concerns_nothing_else() {
     let mut complaints = Vec::new();
     for (edit, reruns, back) in ROWS {
@@ -118,8 +119,8 @@ fn what_comes_and_goes_concerns_nothing_else() {
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn another_name_by_hand_concerns_who_looks_for_it() {
     let mut stage = Stage::open(SCENE);
     let mut rename = |from: &str, to: &'static str| {
@@ -135,8 +136,8 @@ fn another_name_by_hand_concerns_who_looks_for_it() {
     assert_eq!(rename("above", "below"), "");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_file_concerns_those_who_share_it() {
     let volume = |name: &str, x: f32, data: &str, function: &str| {
         format!(

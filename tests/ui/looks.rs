@@ -11,6 +11,7 @@ use std::path::Path;
 use tyndall::components::{ChooseVariant, Specular};
 use tyndall::prelude::*;
 use tyndall::ui::{InspectorContext, inspect, light_direction};
+use tyndall_needs::needs;
 
 /// Drivers differ in the last bits of a blend.
 const OUTLIER: u8 = 24;
@@ -70,8 +71,8 @@ fn components() -> Vec<Box<dyn Reflect>> {
     ]
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_inspector() {
     for scale in [1.0, 2.0] {
         let (registry, components) = (registry(), components());
@@ -93,8 +94,8 @@ fn the_inspector() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_transfer_function_editor() {
     for scale in [1.0, 2.0] {
         let points = vec![
@@ -116,8 +117,8 @@ fn the_transfer_function_editor() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_light_direction() {
     for scale in [1.0, 2.0] {
         let mut harness =
@@ -133,8 +134,8 @@ fn the_light_direction() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_colour_picker() {
     for scale in [1.0, 2.0] {
         let points =

@@ -1,8 +1,9 @@
 use super::*;
 use std::collections::BTreeMap;
+use tyndall_needs::needs;
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn points_of_the_directional_dipole_are_those_of_the_truth() {
     let (mut media, mut cases, mut expected) = (Vec::new(), Vec::new(), Vec::new());
     for case in truth!("sd_points") {

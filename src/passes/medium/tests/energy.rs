@@ -1,5 +1,6 @@
 use super::*;
 use std::f64::consts::PI;
+use tyndall_needs::needs;
 
 /// Mean of `subsurface` over an arc of radius `first` and angles from `second` to `third`, flat ground all around.
 const ARC: &str = "
@@ -62,8 +63,8 @@ fn reflectances(standard: bool, media: &[(MediumUniform, Medium, Boundary, f64)]
     found.chunks_exact(RINGS).zip(media).map(total).collect()
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_plane_reflects_what_each_dipole_is_known_to() {
     let truth = truth!("rd_semi_infinite");
     let each = |model: DipoleModel, fit: bool, least_distance: f64| {
@@ -107,8 +108,8 @@ fn a_plane_reflects_what_each_dipole_is_known_to() {
     compare(&each(DipoleModel::CalibratedDipole, false, LEAST_DISTANCE), "exact", 0.03, "calibrated");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn light_spreads_as_each_dipole_is_known_to() {
     // Rings of a bin, which spans up to ten lengths over which light dies out, by Simpson's rule.
     const INTERVALS: usize = 32;

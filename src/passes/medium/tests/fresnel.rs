@@ -1,8 +1,9 @@
 use super::*;
 use crate::optics::fresnel::{reflectance, refract};
+use tyndall_needs::needs;
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn reflectances_are_those_of_the_truth() {
     let (mut cases, mut expected) = (Vec::new(), Vec::new());
     for case in truth!("fresnel_moments") {
@@ -28,8 +29,8 @@ fn reflectances_are_those_of_the_truth() {
     rounded.check(3e-6, "Fresnel reflectance of what 32 bits hold of the index");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn reflectance_and_refraction_hold_at_every_index_and_angle() {
     let etas =
         [0.5, 2.0 / 3.0, 0.99, 0.9999, 0.999_999_9, 1.0, 1.000_000_1, 1.0001, 1.01, 1.3, 1.5, 2.0, 3.0];

@@ -1,5 +1,6 @@
 use super::*;
 use crate::optics::phase::{henyey_greenstein, henyey_greenstein_cos};
+use tyndall_needs::needs;
 
 /// Every g of the truth, and ones closer to 1.
 fn all_g() -> Vec<f32> {
@@ -17,8 +18,8 @@ fn directions(cos: f64) -> (Vec3, Vec3, f64, f64) {
     (before, after, 0.5 * (a - b).length_squared(), 0.5 * (a + b).length_squared())
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn values_are_those_of_the_truth() {
     let (mut cases, mut expected) = (Vec::new(), Vec::new());
     for case in truth!("hg") {
@@ -40,8 +41,8 @@ fn values_are_those_of_the_truth() {
 
 const VALUE: &str = "return vec4f(henyey_greenstein(at.n_i, at.n_o, at.first));";
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn values_keep_their_digits_at_every_g() {
     let cosines =
         [-1.0, -0.999_999, -0.9999, -0.99, -0.9, -0.5, 0.0, 0.1, 0.5, 0.9, 0.99, 0.9999, 0.999_999, 1.0];
@@ -62,8 +63,8 @@ fn values_keep_their_digits_at_every_g() {
     worst.check(5e-6, "Henyey-Greenstein, relative");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn samples_are_the_inverse_of_the_distribution() {
     let (mut cases, mut expected) = (Vec::new(), Vec::new());
     for case in truth!("hg") {
@@ -92,8 +93,8 @@ fn samples_are_the_inverse_of_the_distribution() {
     strong.check(2e-4, "sampled cosine, |g| up to 0.9999");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn sampled_directions_are_spread_about_the_direction_of_travel() {
     const SIDE: usize = 64;
     let befores = [Vec3::Z, -Vec3::Z, Vec3::X, Vec3::new(0.36, -0.48, 0.8), Vec3::new(-0.6, 0.64, -0.48)];

@@ -2,6 +2,7 @@ use super::*;
 use crate::optics::dipole::{DirectionalDipole, Entry, Exit};
 use crate::optics::fresnel::refract;
 use std::time::Instant;
+use tyndall_needs::needs;
 
 /// Numbers that look random, the same on every machine (SplitMix64).
 struct Random(u64);
@@ -233,20 +234,20 @@ fn off(medium: &Medium, boundary: Boundary, millimetres: f64, case: &Case, found
     (!jumps && !faded && whole > 1e-25 * scale * scale).then(|| (f64::from(found) - value).abs() / whole)
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_directional_dipole_is_finite_whatever_it_is_given() {
     sweep(DipoleModel::DirectionalDipole, 5_120, 8);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_standard_dipole_is_finite_whatever_it_is_given() {
     sweep(DipoleModel::StandardDipole, 5_120, 8);
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_calibrated_dipole_is_finite_whatever_it_is_given() {
     sweep(DipoleModel::CalibratedDipole, 96, 256);
 }

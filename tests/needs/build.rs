@@ -1,41 +1,56 @@
-//! What the machine that builds the tests has. Shared by the build scripts of several packages.
+//! Finds out what the machine that builds the tests has.
+//!
+//! It is this package that follows the environment, not those whose tests ask: with other variables, or another driver, the tests are compiled
+//! again, and the library and the program are not.
 
-use std::{
-    env,
-    path::{Path, PathBuf},
-};
+use std::env;
+use std::path::{Path, PathBuf};
 
-/// Sets `cfg(tyndall_gpu)` where a graphics adapter can be expected, so that tests which draw read *ignored* elsewhere.
-pub fn tell_gpu() {
-    println!("cargo::rustc-check-cfg=cfg(tyndall_gpu)");
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    tell("gpu", has_gpu());
+    tell("data", has_data());
+    tell("display", has_display());
+}
+
+/// Sets `cfg(has_…)`.
+fn tell(what: &str, is_there: bool) {
+    println!("cargo::rustc-check-cfg=cfg(has_{what})");
+    if is_there {
+        println!("cargo::rustc-cfg=has_{what}");
+    }
+}
+
+/// Whether a graphics adapter can be expected.
+fn has_gpu() -> bool {
     println!("cargo::rerun-if-env-changed=VK_DRIVER_FILES");
     println!("cargo::rerun-if-env-changed=VK_ICD_FILENAMES");
     for folder in manifest_folders() {
         println!("cargo::rerun-if-changed={}", folder.display());
     }
-    let system = env::var("CARGO_CFG_TARGET_OS").unwrap_or_default();
-    if matches!(system.as_str(), "macos" | "windows") || has_vulkan_driver() {
-        println!("cargo::rustc-cfg=tyndall_gpu");
-    }
+    cfg!(any(target_os = "macos", windows)) || has_vulkan_driver()
 }
 
-/// Sets `cfg(tyndall_display)` where windows can be opened on an X server in memory, Xvfb.
-#[allow(dead_code, reason = "packages whose tests open no window do not ask")]
-pub fn tell_display() {
-    println!("cargo::rustc-check-cfg=cfg(tyndall_display)");
+/// Whether the folder of test data is there.
+fn has_data() -> bool {
+    println!("cargo::rerun-if-env-changed=TYNDALL_DATA");
+    env::var_os("TYNDALL_DATA").is_some_and(|folder| Path::new(&folder).is_dir())
+}
+
+/// Whether windows can be opened on an X server in memory, Xvfb.
+fn has_display() -> bool {
     println!("cargo::rerun-if-env-changed=PATH");
     let folders =
         env::var_os("PATH").map(|path| env::split_paths(&path).collect::<Vec<_>>()).unwrap_or_default();
-    match folders.iter().map(|folder| folder.join("Xvfb")).find(|program| program.is_file()) {
-        Some(program) => {
-            println!("cargo::rerun-if-changed={}", program.display());
-            println!("cargo::rustc-cfg=tyndall_display");
-        }
+    let program = folders.iter().map(|folder| folder.join("Xvfb")).find(|program| program.is_file());
+    match &program {
+        Some(program) => println!("cargo::rerun-if-changed={}", program.display()),
         // It may be installed into any of them.
         None => folders.iter().filter(|folder| folder.is_dir()).for_each(|folder| {
             println!("cargo::rerun-if-changed={}", folder.display());
         }),
     }
+    program.is_some()
 }
 
 /// Whether a manifest of a Vulkan driver can be found as the Vulkan loader would find it: where the environment names some, no others count.
