@@ -1,7 +1,9 @@
 //! The files that components name, read into the world.
 
 use crate::Stage;
-use crate::components::{self, Auto, DataFrame, Mesh, Place, Placement, Subsurface, Volume};
+use crate::components::{
+    self, Auto, DataFrame, Mesh, Place, Placement, Subsurface, TransferFunction, Volume,
+};
 use crate::scene::{EntityProblems, Problem};
 use crate::sources::trail::{self, FileState, Trail};
 use crate::sources::{
@@ -33,6 +35,16 @@ pub struct LoadedMesh {
     pub data: Option<MeshData>,
     /// Corners of the box around the mesh, in the mesh's own space.
     pub bounds: (Vec3, Vec3),
+    /// Vertices that lie farthest out in some directions.
+    pub extremes: Vec<Vec3>,
+}
+
+impl LoadedMesh {
+    /// The mesh, with what is known of it once its triangles are gone.
+    pub fn new(data: MeshData) -> Self {
+        let (bounds, extremes) = (data.bounds().unwrap_or_default(), data.extremes());
+        Self { data: Some(data), bounds, extremes }
+    }
 }
 
 /// The samples of a [`Volume`], until they are on the GPU.
@@ -50,15 +62,25 @@ impl LoadedVolume {
         Vec3::from(self.data.size.map(|voxels| voxels as f32)) * self.data.spacing * 0.5
     }
 
-    /// The data values at the ends of a transfer function's domain: those written, the range of an integer format, or of the data.
-    pub fn domain(&self, written: Auto<glam::Vec2>) -> (f32, f32) {
-        let automatic = self.data.samples.format().integer_range().unwrap_or(self.data.range);
-        match written {
+    /// The data values at the ends of a transfer function's domain: those written, or else those that a preset is about, that the file
+    /// recommends, or that the data have.
+    pub fn domain(&self, function: &TransferFunction) -> (f32, f32) {
+        let data = &self.data;
+        let automatic = function
+            .preset_domain()
+            .or(data.window.filter(|window| window.0 < window.1))
+            .unwrap_or(data.core_range);
+        match function.domain {
             Auto::Value(domain) => (domain.x, domain.y),
             Auto::Auto if automatic.0 < automatic.1 => automatic,
             // Constant data has no range; any domain that holds the value does.
             Auto::Auto => (automatic.0, automatic.0 + automatic.0.abs().max(1.0)),
         }
+    }
+
+    /// The function with the points of its preset, if it has one.
+    pub fn function_in_force(&self, function: &TransferFunction) -> TransferFunction {
+        function.in_force(Some(&self.data.histogram), self.domain(function))
     }
 }
 
@@ -169,8 +191,7 @@ fn load_meshes(
             Ok(data) => {
                 let note = |note: &String| Problem::note(note.clone()).on(entity, "Mesh");
                 let problems = data.notes.iter().map(note).collect();
-                let bounds = data.bounds().unwrap_or_default();
-                commands.entity(entity).insert(LoadedMesh { data: Some(data), bounds });
+                commands.entity(entity).insert(LoadedMesh::new(data));
                 problems
             }
             // What was loaded last stays. `Mesh.0` is the path of a file.

@@ -9,6 +9,7 @@ use crate::view::Picture;
 use bevy_app::App;
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::AppTypeRegistry;
+use bevy_reflect::TypeRegistry;
 use std::path::Path;
 use std::time::Instant;
 
@@ -46,9 +47,18 @@ pub enum RenderError {
 
 /// Reads the scene at `path` into the world, or reports in [`Problems`] why it cannot; then what was there before stays.
 pub fn load_scene(app: &mut App, path: &Path, overrides: &[Override]) -> SceneDocument {
+    load(app, |registry| SceneDocument::load(path, registry, overrides))
+}
+
+/// The same for a scene whose text is in no file yet, as if it stood in one at `path`.
+pub fn load_text(app: &mut App, path: &Path, text: String, overrides: &[Override]) -> SceneDocument {
+    load(app, |registry| SceneDocument::of_text(path, text, registry, overrides))
+}
+
+fn load(app: &mut App, read: impl FnOnce(&TypeRegistry) -> SceneDocument) -> SceneDocument {
     let started = Instant::now();
     let registry = app.world().resource::<AppTypeRegistry>().clone();
-    let document = SceneDocument::load(path, &registry.read(), overrides);
+    let document = read(&registry.read());
     app.world_mut().insert_resource(Problems(document.problems.clone()));
     if !document.has_errors() {
         scene::reconcile(app.world_mut(), &document);

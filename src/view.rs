@@ -2,6 +2,8 @@
 
 mod asked;
 mod covered;
+mod framing;
+mod unseen;
 
 pub use asked::{Coarseness, Comparison, Drawing, FreeCamera, Picture, Split, Viewpoint};
 pub(crate) use asked::{Part, in_parts, is_wanted};
@@ -10,8 +12,9 @@ pub(crate) use covered::{Pixels, covered};
 use crate::Stage;
 use crate::components::{DirectionalLight, Motion, Placement, Projection, SceneSettings, ViewCamera};
 use crate::gpu::{Gpu, uniform_array, uniform_buffer};
-use crate::loading::{LoadedMesh, LoadedVolume, placed_corners};
+use crate::loading::{LoadedMesh, LoadedVolume, corners, placed_corners};
 use crate::mirrors::mirror;
+use crate::passes::classify::Classified;
 use crate::scene::{Problem, Problems};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
@@ -32,7 +35,7 @@ impl Plugin for ViewPlugin {
             .init_resource::<Drawing>()
             .add_systems(
                 Update,
-                (look, upload_frame.run_if(resource_exists::<Gpu>)).chain().in_set(Stage::View),
+                (look, unseen::tell, upload_frame.run_if(resource_exists::<Gpu>)).chain().in_set(Stage::View),
             );
     }
 }
@@ -155,7 +158,7 @@ pub(crate) fn lights_module(capacity: usize) -> (&'static str, String) {
 
 type Boxes<'w, 's> = (
     Query<'w, 's, (&'static Placement, &'static LoadedMesh)>,
-    Query<'w, 's, (&'static Placement, &'static LoadedVolume)>,
+    Query<'w, 's, (&'static Placement, &'static LoadedVolume, Option<&'static Classified>)>,
 );
 
 fn look(
@@ -166,21 +169,26 @@ fn look(
     free: Res<FreeCamera>,
     (mut view, mut bounds): (ResMut<View>, ResMut<SceneBounds>),
 ) {
-    let corners = scene_corners(&boxes, &settings);
-    bounds.set_if_neq(SceneBounds(box_around(&corners)));
+    let all = scene_corners(&boxes, &settings);
+    bounds.set_if_neq(SceneBounds(box_around(&all)));
     let wanted =
         |name: Option<&Name>| picture.camera.is_none() || picture.camera.as_deref() == name.map(Name::as_str);
     let found = cameras
         .iter()
         .filter(|(name, ..)| wanted(*name))
         .min_by_key(|(name, ..)| name.map(|name| name.as_str().to_owned()));
+    let points = || framing_points(&boxes, &settings);
     let (camera, placement) = match found {
         Some((_, camera, placement)) => (camera, placement.0),
         None => (&camera_on_all(bounds.0, picture.size), DAffine3::IDENTITY),
     };
-    let viewpoint = free.0.unwrap_or_else(|| Viewpoint::of(camera, placement));
+    let framed = || {
+        let framing = camera.frame.as_ref()?;
+        framing::framed(camera, framing, &points(), picture.size)
+    };
+    let viewpoint = free.0.or_else(framed).unwrap_or_else(|| Viewpoint::of(camera, placement));
     let mut new = View::from_viewpoint(viewpoint, camera.exposure, camera.gamma);
-    let depths = corners.iter().map(|corner| -new.eye_from_scene.transform_point3(*corner).z);
+    let depths = all.iter().map(|corner| -new.eye_from_scene.transform_point3(*corner).z);
     new.far = depths.fold(1.0, f64::max);
     view.set_if_neq(new);
 }
@@ -188,9 +196,26 @@ fn look(
 /// The corners of everything that can be seen.
 fn scene_corners((meshes, volumes): &Boxes, settings: &SceneSettings) -> Vec<DVec3> {
     let meshes = meshes.iter().flat_map(|(placement, mesh)| placed_corners(placement, mesh.bounds));
-    let volumes = volumes.iter().flat_map(|(placement, volume)| {
+    let volumes = volumes.iter().flat_map(|(placement, volume, _)| {
         let half = volume.half_extent() / settings.millimetres_per_unit;
         placed_corners(placement, (-half, half))
+    });
+    meshes.chain(volumes).collect()
+}
+
+/// Points around what is really seen: vertices of meshes that stand out, and what can be noticed of volumes.
+fn framing_points((meshes, volumes): &Boxes, settings: &SceneSettings) -> Vec<DVec3> {
+    let meshes = meshes.iter().flat_map(|(placement, mesh)| {
+        mesh.extremes.iter().map(|point| placement.0.transform_point3(point.as_dvec3()))
+    });
+    let volumes = volumes.iter().flat_map(|(placement, volume, classified)| {
+        let half = volume.half_extent() / settings.millimetres_per_unit;
+        let voxel = volume.data.spacing / settings.millimetres_per_unit;
+        let own: Vec<Vec3> = match classified.map(|classified| classified.extent.as_slice()) {
+            Some(extent) if !extent.is_empty() => extent.iter().map(|point| *point * voxel - half).collect(),
+            _ => corners((-half, half)).map(|corner| corner.as_vec3()).collect(),
+        };
+        own.into_iter().map(|point| placement.0.transform_point3(point.as_dvec3()))
     });
     meshes.chain(volumes).collect()
 }

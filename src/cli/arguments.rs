@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use super::open::Directions;
 use crate::scene::Override;
 use clap::{Args, Parser, Subcommand};
 use glam::UVec2;
@@ -16,22 +17,25 @@ pub(super) struct Arguments {
 
 #[derive(Subcommand, Debug)]
 pub(super) enum Command {
-    /// Show a scene in a window, and read it again whenever its files change
+    /// Show a scene, meshes or volumes in a window, and read them again whenever their files change
     View(ViewArguments),
-    /// Draw a scene into a PNG (exposed and gamma-encoded) or EXR (linear radiance) file
+    /// Draw a scene, meshes or volumes into a PNG (exposed and gamma-encoded) or EXR (linear radiance) file
     Render(RenderArguments),
     /// Find every problem of scenes: syntax, names, values, files
     Check(CheckArguments),
-    /// Tell what this machine draws with, or what a scene holds
+    /// Tell what this machine draws with, or what a scene or a file holds
     Info(InfoArguments),
-    /// Write a starter scene, or a starter plugin crate
+    /// Write a starter scene, a scene for meshes and volumes, or a starter plugin crate
     New(NewArguments),
 }
 
 #[derive(Args, Debug)]
 pub(super) struct ViewArguments {
-    /// The scene, a RON file
-    pub scene: PathBuf,
+    /// A scene (RON), or meshes, volumes and folders of DICOM slices to look at together
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub directions: Directions,
     /// Pixels of the window across and down; else what it was when it was last closed
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<UVec2>,
@@ -48,8 +52,11 @@ pub(super) struct ViewArguments {
 
 #[derive(Args, Debug)]
 pub(super) struct RenderArguments {
-    /// The scene, a RON file
-    pub scene: PathBuf,
+    /// A scene (RON), or meshes, volumes and folders of DICOM slices to draw together
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub directions: Directions,
     /// The picture to write: its ending, .png or .exr, says which kind
     #[arg(short, long, default_value = "out.png", value_parser = picture_path)]
     pub output: PathBuf,
@@ -81,9 +88,9 @@ pub(super) struct RenderArguments {
 
 #[derive(Args, Debug)]
 pub(super) struct CheckArguments {
-    /// The scenes, RON files
-    #[arg(required = true)]
-    pub scenes: Vec<PathBuf>,
+    /// Scenes (RON), meshes, volumes, folders of DICOM slices
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
     /// Print the problems as JSON on standard output
     #[arg(long)]
     pub json: bool,
@@ -91,8 +98,9 @@ pub(super) struct CheckArguments {
 
 #[derive(Args, Debug)]
 pub(super) struct InfoArguments {
-    /// A scene; without one, the machine
-    pub scene: Option<PathBuf>,
+    /// A scene (RON), or meshes, volumes and folders of DICOM slices; without any, the machine
+    #[arg(value_name = "FILE")]
+    pub files: Vec<PathBuf>,
     /// Print JSON on standard output
     #[arg(long)]
     pub json: bool,
@@ -100,8 +108,14 @@ pub(super) struct InfoArguments {
 
 #[derive(Args, Debug)]
 pub(super) struct NewArguments {
-    /// The folder to make
-    pub folder: PathBuf,
+    /// The folder to make; or meshes, volumes and folders of DICOM slices to write a scene for
+    #[arg(required = true, value_name = "DIR|FILE")]
+    pub paths: Vec<PathBuf>,
+    /// The scene to write for the files
+    #[arg(short, long, value_name = "SCENE", conflicts_with = "plugin")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub directions: Directions,
     /// Make a plugin crate with a component of its own instead of a scene
     #[arg(long)]
     pub plugin: bool,

@@ -2,6 +2,7 @@
 
 use super::arguments::CheckArguments;
 use super::exit::{self, Failure};
+use super::open::{Directions, Input};
 use crate::render;
 use crate::scene::{self, Problem, SceneDocument, Severity};
 use bevy_app::App;
@@ -11,8 +12,9 @@ use std::path::Path;
 pub(super) fn run(app: &mut App, arguments: &CheckArguments) -> Result<(), Failure> {
     let mut fine = true;
     let mut all = Vec::new();
-    for scene in &arguments.scenes {
-        let problems = check(app, scene);
+    for scene in &arguments.files {
+        let input = Input::of(std::slice::from_ref(scene), &Directions { up: None, front: None })?;
+        let problems = check(app, &input);
         fine &= problems.iter().all(|problem| problem.severity != Severity::Error);
         if arguments.json {
             all.extend(problems.iter().map(|problem| describe(scene, problem)));
@@ -28,10 +30,10 @@ pub(super) fn run(app: &mut App, arguments: &CheckArguments) -> Result<(), Failu
 }
 
 /// Every problem of a scene, those of the files that its components name included.
-pub(super) fn check(app: &mut App, path: &Path) -> Vec<Problem> {
+fn check(app: &mut App, input: &Input) -> Vec<Problem> {
     // An earlier scene may hold an equal component with the same mistake, which would not be read, nor reported, again.
     scene::reconcile(app.world_mut(), &SceneDocument::default());
-    let document = render::load_scene(app, path, &[]);
+    let document = input.load(app, &[]);
     render::all_problems(app, &document)
 }
 

@@ -2,6 +2,7 @@
 
 use super::arguments::InfoArguments;
 use super::exit::{self, Failure};
+use super::open::{Directions, Input};
 use super::render::gpu_description;
 use crate::gpu::{Gpu, GpuOptions};
 use crate::loading::{Contents, contents};
@@ -14,9 +15,11 @@ use serde_json::{Value, json};
 const BINS_PER_COLUMN: usize = 4;
 
 pub(super) fn run(app: &mut App, arguments: &InfoArguments) -> Result<(), Failure> {
-    let facts = match &arguments.scene {
-        Some(scene) => {
-            let document = render::load_scene(app, scene, &[]);
+    let facts = match arguments.files.as_slice() {
+        [] => machine()?,
+        files => {
+            let input = Input::of(files, &Directions { up: None, front: None })?;
+            let document = input.load(app, &[]);
             let problems = render::all_problems(app, &document);
             exit::print(&problems);
             if problems.iter().any(|problem| problem.severity == crate::scene::Severity::Error) {
@@ -29,7 +32,6 @@ pub(super) fn run(app: &mut App, arguments: &InfoArguments) -> Result<(), Failur
                 .collect::<serde_json::Map<_, _>>()
                 .into()
         }
-        None => machine()?,
     };
     if arguments.json {
         println!("{facts:#}");

@@ -13,6 +13,7 @@ mod check;
 mod exit;
 mod info;
 mod new;
+mod open;
 mod output;
 mod progress;
 mod render;

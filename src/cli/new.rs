@@ -3,10 +3,21 @@
 use super::arguments::NewArguments;
 use super::exit::Failure;
 use super::output;
+use crate::scene::{is_data, scene_of_files};
+use crate::whole_file::folder_of;
 use std::path::Path;
 
 pub(super) fn run(arguments: &NewArguments) -> Result<(), Failure> {
-    let folder = &arguments.folder;
+    if let Some(output) = &arguments.output {
+        return scene_for(arguments, output);
+    }
+    let [folder] = arguments.paths.as_slice() else {
+        return Err(Failure::Usage("for several files, say which scene to write: `-o scene.ron`".into()));
+    };
+    if is_data(folder) && !folder.is_dir() {
+        let message = format!("say which scene to write for {}: `-o scene.ron`", folder.display());
+        return Err(Failure::Usage(message));
+    }
     if folder.read_dir().is_ok_and(|mut entries| entries.next().is_some()) {
         return Err(Failure::Usage(format!("{} is not empty; nothing was written", folder.display())));
     }
@@ -22,6 +33,26 @@ pub(super) fn run(arguments: &NewArguments) -> Result<(), Failure> {
         output::write(&path, &contents)?;
         eprintln!("wrote {}", path.display());
     }
+    Ok(())
+}
+
+/// Writes a scene that shows the files.
+fn scene_for(arguments: &NewArguments, output: &Path) -> Result<(), Failure> {
+    let missing = arguments.paths.iter().find(|path| !is_data(path));
+    if let Some(path) = missing {
+        let message =
+            format!("{} is no mesh or volume that is read here; nothing was written", path.display());
+        return Err(Failure::Usage(message));
+    }
+    if output.exists() {
+        let message = format!("{} is there already; nothing was written", output.display());
+        return Err(Failure::Usage(message));
+    }
+    output::check_folder(output)?;
+    let text = scene_of_files(&arguments.paths, &folder_of(output), &arguments.directions.orientation());
+    let text = text.map_err(|error| Failure::Usage(error.to_string()))?;
+    output::write(output, text.as_bytes())?;
+    eprintln!("wrote {}", output.display());
     Ok(())
 }
 

@@ -2,6 +2,7 @@
 
 use super::arguments::RenderArguments;
 use super::exit::{self, Failure};
+use super::open::Input;
 use super::{output, progress};
 use crate::components::ViewCamera;
 use crate::gpu::{Gpu, GpuOptions};
@@ -16,12 +17,13 @@ use std::time::Instant;
 
 pub(super) fn run(app: &mut App, arguments: &RenderArguments, started: Instant) -> Result<(), Failure> {
     output::check_folder(&arguments.output)?;
+    let input = Input::of(&arguments.files, &arguments.directions)?;
     arguments.stats.as_deref().map_or(Ok(()), output::check_folder)?;
     app.world_mut().resource_mut::<Report>().spent("start", started);
     // The driver takes its time to wake up; meanwhile the scene is read.
     let options = GpuOptions { portable: arguments.portable };
     let gpu = std::thread::spawn(move || (pollster::block_on(Gpu::new(&options)), Instant::now()));
-    let document = render::load_scene(app, &arguments.scene, &arguments.overrides);
+    let document = input.load(app, &arguments.overrides);
     let fine = check_document(app, &document)
         .and_then(|()| check_camera(app.world_mut(), arguments.camera.as_deref()));
     if let Err(failure) = fine {

@@ -77,9 +77,14 @@ pub(crate) fn in_ron(numbers: &[f32]) -> String {
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 pub struct Unit(pub &'static str);
 
-/// Marks the first field of an enum's variant as one that may stand without its name: `File("head.nii", place: Patient)`.
+/// Marks the first field of an enum's variant as one that may stand without its name, if it stands alone: `File("head.nii")`.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 pub struct Leading;
+
+/// Marks the first field of a struct as one that a name in front of the parentheses stands for: with `Shorthand("Preset")`,
+/// `Preset("Object")` means `(preset: "Object")`.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+pub struct Shorthand(pub &'static str);
 
 /// Marks a field of an enum variant that has no default and must be written.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]

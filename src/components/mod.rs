@@ -25,7 +25,9 @@ mod volume;
 mod volume_lighting;
 
 pub use asset_path::AssetPath;
-pub use attributes::{Leading, NameOf, Names, Range, ReflectValidate, Required, Unit, Untagged, Validate};
+pub use attributes::{
+    Leading, NameOf, Names, Range, ReflectValidate, Required, Shorthand, Unit, Untagged, Validate,
+};
 pub use auto::Auto;
 pub use directional_light::DirectionalLight;
 pub use mesh::Mesh;
@@ -38,10 +40,10 @@ pub use scattering_maps::{MapResolution, MapStrategy, SampleRadius, ScatteringMa
 pub use scene_settings::SceneSettings;
 pub use shading::Shading;
 pub use subsurface::{DipoleModel, Material, Specular, Subsurface};
-pub use transfer_function::{Classification, ControlPoint, IsoValue, TransferFunction};
+pub use transfer_function::{Classification, ControlPoint, IsoValue, Preset, TransferFunction};
 pub(crate) use transform::place;
 pub use transform::{DataFrame, Motion, Placement, Scale, Transform};
-pub use view_camera::{Projection, ViewCamera};
+pub use view_camera::{Framing, Projection, ViewCamera};
 pub use volume::{Endian, Interpolation, Place, SampleFormat, Volume};
 pub use volume_lighting::VolumeLighting;
 

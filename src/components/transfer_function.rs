@@ -1,7 +1,12 @@
+mod preset;
+
+pub use preset::Preset;
+
 use super::{
-    Auto, Label, Range, Rgb, Slider, Unit, Validate,
+    Auto, Label, Names, Range, Rgb, Shorthand, Slider, Unit, Validate,
     attributes::{ReflectValidate, in_ron},
 };
+use crate::sources::Histogram;
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::{Vec2, Vec3};
@@ -10,12 +15,25 @@ use glam::{Vec2, Vec3};
 ///
 /// | field | type | unit | range | default |
 /// |---|---|---|---|---|
-/// | `domain` | `Auto` or (low, high) | data values | low below high | `Auto`: the range of an integer format, or of the data |
+/// | `preset` | a name of the table below, or `None` | – | – | `None` |
+/// | `domain` | `Auto` or (low, high) | data values | low below high | `Auto`: that of a preset in units; or what the file recommends (DICOM's window, NIfTI's `cal_min` and `cal_max`); or the range of the data, without fill values and extremes that would stretch it to more than twice its length |
 /// | `points` | list of (position, (r, g, b), opacity) | position 0..1 in the domain | sorted; opacity 0 to 1 | a ramp from clear to white |
 /// | `iso` | list of (value, width, color, absorption) | data values; per `opacity_length` | – | none |
 /// | `entries` | entries of the lookup table | – | 2 to 8,192; to 1,024 where `PreIntegrated` | 1024 |
 /// | `classification` | `Post`, `Pre` or `PreIntegrated` | – | – | `Post` |
 /// | `opacity_length` | `Auto` or a length | mm | above 0 | `Auto`: one voxel of the shortest spacing |
+///
+/// `TransferFunction: Preset("Object")` stands for `(preset: "Object")`. A preset takes the place of
+/// `points` and `iso`:
+///
+/// | preset | shows |
+/// |---|---|
+/// | `Ramp` | from clear to white over the domain |
+/// | `Object` | what lies above the background, faint to bright |
+/// | `Surface`, `Shells` | one level set at the border of the background; three, each within the one before |
+/// | `Glow`, `Mist` | a veil of violet with red, orange and white inside; pale blue with bright cores |
+/// | `CT bone`, `CT soft tissue`, `CT lungs`, `CT vessels` | of computed tomography, in Hounsfield units |
+/// | `MR` | skin, brain and what is bright in magnetic resonance, by the data's own distribution |
 ///
 /// Between points colour and opacity are linear; beyond the first and last they are constant. An opacity holds over
 /// `opacity_length`: a slab of that thickness absorbs this share, whatever the step of the ray is. So the extinction per millimetre
@@ -48,12 +66,16 @@ use glam::{Vec2, Vec3};
 ///
 /// ```ron
 /// TransferFunction: (domain: (0.0, 255.0), points: [(0.0, (0.0, 0.0, 0.0), 0.0), (1.0, (0.9, 0.8, 0.6), 0.6)])
+/// TransferFunction: Preset("CT bone")
 /// TransferFunction: (iso: [(value: 0.0, width: 0.02, color: (1.0, 0.8, 0.0), absorption: 1.0)])
 /// TransferFunction: (iso: [(value: 0.0, width: 0.0, absorption: 3.0)], classification: PreIntegrated)
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, PartialEq, Validate)]
 pub struct TransferFunction {
+    /// A built-in function that follows the data, in place of `points` and `iso`.
+    #[reflect(@Shorthand("Preset"), @Names { of: "preset", known: &preset::NAMES })]
+    pub preset: Option<String>,
     /// The data values at positions 0 and 1.
     #[reflect(@Unit("data values"))]
     pub domain: Auto<Vec2>,
@@ -74,6 +96,7 @@ pub struct TransferFunction {
 impl Default for TransferFunction {
     fn default() -> Self {
         Self {
+            preset: None,
             domain: Auto::Auto,
             points: Vec::new(),
             iso: Vec::new(),
@@ -85,6 +108,25 @@ impl Default for TransferFunction {
 }
 
 impl TransferFunction {
+    /// The function with the points and iso values of its preset, if it has one, for data with this histogram.
+    pub fn in_force(&self, histogram: Option<&Histogram>, domain: (f32, f32)) -> Self {
+        match self.preset() {
+            Some(preset) => preset.applied(self, histogram, domain),
+            None => self.clone(),
+        }
+    }
+
+    /// The preset, if it has one that is known.
+    pub fn preset(&self) -> Option<Preset> {
+        let name = self.preset.as_deref()?;
+        Preset::ALL.into_iter().find(|preset| preset.name() == name)
+    }
+
+    /// The data values that its preset is about, if that is in units.
+    pub fn preset_domain(&self) -> Option<(f32, f32)> {
+        self.preset()?.domain()
+    }
+
     /// The points in force: those written, or a ramp from clear to white where neither points nor iso values are.
     pub fn points_in_force(&self) -> Vec<ControlPoint> {
         if !self.points.is_empty() || !self.iso.is_empty() {

@@ -14,6 +14,7 @@ use glam::Vec3;
 /// | `eye` | point | scene units | not `target` | (0, 0, 4) |
 /// | `target` | point that appears in the middle | scene units | – | (0, 0, 0) |
 /// | `up` | vector that points up in the picture | – | not along the view | (0, 1, 0) |
+/// | `frame` | `None`, or `(from, fill)`: the camera stands in the direction `from` of all that can be seen, so far away that it fills this share of the picture; `eye` and `target` play no part | – | `from` not 0 and not along `up`; `fill` 0.01 to 1 | `None`; `from: (0, 0, 1)`, `fill: 0.9` |
 /// | `projection` | `Perspective(vertical_fov)` or `Orthographic(height)` | degrees; scene units | 0.01 to 179; above 0 | `Perspective(vertical_fov: 45.0)` |
 /// | `exposure` | number | EV: each step doubles the brightness | -100 to 100 | 0 |
 /// | `gamma` | encoding exponent of the PNG | – | 0.1 to 10 | 2.2 |
@@ -36,6 +37,8 @@ pub struct ViewCamera {
     pub target: Vec3,
     /// What points up in the picture.
     pub up: Vec3,
+    /// Has the camera stand where all of the scene fills the picture, in place of `eye` and `target`.
+    pub frame: Option<Framing>,
     /// How the scene is projected.
     pub projection: Projection,
     /// Exposure value.
@@ -52,6 +55,7 @@ impl Default for ViewCamera {
             eye: Vec3::new(0.0, 0.0, 4.0),
             target: Vec3::ZERO,
             up: Vec3::Y,
+            frame: None,
             projection: Projection::default(),
             exposure: 0.0,
             gamma: 2.2,
@@ -61,8 +65,14 @@ impl Default for ViewCamera {
 
 impl Validate for ViewCamera {
     fn problems(&self) -> Vec<(&'static str, String)> {
-        let view = (self.target.as_dvec3() - self.eye.as_dvec3()).normalize_or_zero();
+        let view = match self.frame {
+            Some(frame) => -frame.from.as_dvec3().normalize_or_zero(),
+            None => (self.target.as_dvec3() - self.eye.as_dvec3()).normalize_or_zero(),
+        };
         let up = self.up.as_dvec3().normalize_or_zero();
+        if view.length_squared() == 0.0 && self.frame.is_some() {
+            return vec![("frame", "`from` must point somewhere, found (0, 0, 0)".to_owned())];
+        }
         if view.length_squared() == 0.0 {
             return vec![(
                 "target",
@@ -81,6 +91,23 @@ impl Validate for ViewCamera {
             return vec![("up", message)];
         }
         Vec::new()
+    }
+}
+
+/// A camera that stands where all of the scene fills the picture.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Default, PartialEq)]
+pub struct Framing {
+    /// The direction from what is seen to the camera.
+    pub from: Vec3,
+    /// The share of the picture's height or width, whichever is less, that is filled.
+    #[reflect(@Range::new(0.01, 1.0))]
+    pub fill: f32,
+}
+
+impl Default for Framing {
+    fn default() -> Self {
+        Self { from: Vec3::Z, fill: 0.9 }
     }
 }
 

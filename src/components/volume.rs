@@ -23,7 +23,7 @@ pub use crate::sources::{Endian, SampleFormat};
 ///
 /// | field of `File` | type | unit | range | default |
 /// |---|---|---|---|---|
-/// | `path` | file or folder; may stand without its name | – | – | – |
+/// | `path` | file or folder; alone it needs no name | – | – | – |
 /// | `place` | `Centred` on the entity's origin, or `Patient`: where the file says, so that a mask lies on its scan | – | – | `Centred` |
 /// | `index` | entry along a fourth axis, such as a time point | – | below their number | 0 |
 /// | `component` | `Auto` (all of a colour, else the first), or one of the numbers that each sample consists of | – | below their number | `Auto` |
@@ -45,7 +45,7 @@ pub use crate::sources::{Endian, SampleFormat};
 ///
 /// ```ron
 /// Volume: File("head.nii.gz")
-/// Volume: File("mask.nii.gz", place: Patient, interpolation: Nearest)
+/// Volume: File(path: "mask.nii.gz", place: Patient, interpolation: Nearest)
 /// Volume: Raw(path: "../assets/bonsai.raw", size: (256, 256, 256), format: U8, spacing: (0.08, 0.08, 0.08))
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]

@@ -61,9 +61,18 @@ impl LookupTable {
 
     /// Answers which stretches of the table absorb anything.
     pub fn holds_something(&self) -> Held {
+        self.holds_above(0.0)
+    }
+
+    /// Answers which stretches of the table absorb as much as can be noticed beside the rest: a fiftieth of the greatest extinction.
+    pub fn holds_noticeable(&self) -> Held {
+        self.holds_above(self.entries.iter().map(|entry| entry.w).fold(0.0, f32::max) / 50.0)
+    }
+
+    fn holds_above(&self, least: f32) -> Held {
         let mut before = vec![0u32];
         for entry in &self.entries {
-            before.push(before[before.len() - 1] + u32::from(entry.w > 0.0));
+            before.push(before[before.len() - 1] + u32::from(entry.w > least));
         }
         let layers = self.layers.iter().filter(|layer| layer.depth > 0.0);
         Held { before, layers: layers.map(|layer| layer.cell as f64).collect() }

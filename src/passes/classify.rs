@@ -7,9 +7,12 @@
 use crate::components::{Classification, SceneSettings, TransferFunction, Volume};
 use crate::gpu::VolumeFormat;
 use crate::loading::LoadedVolume;
-use crate::optics::transfer::{Cumulative, LookupTable};
+use crate::optics::transfer::{Cumulative, Held, LookupTable};
 use crate::report::Report;
+use crate::sources::mesh::extremes;
+use crate::sources::{BrickRanges, VolumeData};
 use bevy_ecs::prelude::*;
+use glam::Vec3;
 
 /// What a transfer function makes of a volume.
 #[derive(Component, Debug)]
@@ -20,6 +23,8 @@ pub(crate) struct Classified {
     pub domain: (f32, f32),
     /// Bricks along each axis.
     pub bricks: [u32; 3],
+    /// Points around what can be noticed, in voxels from the volume's corner; none where nothing can.
+    pub extent: Vec<Vec3>,
     /// Distance of each brick from the nearest that holds something, in bricks, at most 255; 0 is such a brick.
     pub distances: Vec<u8>,
     /// When the function is applied.
@@ -81,9 +86,10 @@ pub(crate) fn classify(
             continue;
         }
         *version += 1;
-        let domain = volume.domain(function.domain);
+        let domain = volume.domain(function);
+        let in_force = volume.function_in_force(function);
         let voxel = volume.data.spacing.min_element();
-        let table = LookupTable::new(function, domain, voxel, settings.millimetres_per_unit);
+        let table = LookupTable::new(&in_force, domain, voxel, settings.millimetres_per_unit);
         let bricks = &volume.data.bricks;
         let held = table.holds_something();
         let occupied: Vec<bool> = bricks
@@ -91,6 +97,7 @@ pub(crate) fn classify(
             .iter()
             .map(|range| held.between(table.position(domain, range[0]), table.position(domain, range[1])))
             .collect();
+        let extent = extent(&volume.data, &table.holds_noticeable(), |value| table.position(domain, value));
         let distances = distances(bricks.size, &occupied);
         report
             .ran("classify", &[("entries", table.entries.len() as u64), ("bricks", distances.len() as u64)]);
@@ -99,6 +106,7 @@ pub(crate) fn classify(
             table,
             domain,
             bricks: bricks.size,
+            extent,
             distances,
             classification: function.classification,
             versions: Versions::default(),
@@ -106,6 +114,36 @@ pub(crate) fn classify(
         };
         commands.entity(entity).insert(classified.versioned(former, *version));
     }
+}
+
+/// Points around what can be noticed, in voxels from the volume's corner; none where nothing can.
+///
+/// Where it begins and ends along the axes is known to a voxel, in between to a brick.
+fn extent(data: &VolumeData, held: &Held, place: impl Fn(f32) -> f64) -> Vec<Vec3> {
+    let holds = |range: &[f32; 2]| range[0] <= range[1] && held.between(place(range[0]), place(range[1]));
+    let bounds = [0, 1, 2].map(|axis| {
+        let slices = &data.slices.along[axis];
+        let (first, last) = (slices.iter().position(holds), slices.iter().rposition(holds));
+        first.zip(last).map(|(first, last)| (first as f32, (last + 1) as f32))
+    });
+    let [Some(x), Some(y), Some(z)] = bounds else { return Vec::new() };
+    let (low, high) = (Vec3::new(x.0, y.0, z.0), Vec3::new(x.1, y.1, z.1));
+    let [bricks, rows, _] = data.bricks.size.map(|side| side as usize);
+    let mut points = Vec::new();
+    for (row, ranges) in data.bricks.ranges.chunks_exact(bricks).enumerate() {
+        let (Some(first), Some(last)) = (ranges.iter().position(holds), ranges.iter().rposition(holds))
+        else {
+            continue;
+        };
+        let brick = |x: usize| Vec3::new(x as f32, (row % rows) as f32, (row / rows) as f32);
+        for (corner, step) in [(brick(first), 0.0), (brick(last), 1.0)] {
+            for (y, z) in [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)] {
+                let voxel = (corner + Vec3::new(step, y, z)) * BrickRanges::BRICK as f32;
+                points.push(voxel.clamp(low, high));
+            }
+        }
+    }
+    extremes(&points)
 }
 
 /// Distance of each cell from the nearest occupied one, as a king moves in three dimensions, at most 255.

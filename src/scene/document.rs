@@ -146,6 +146,15 @@ impl SceneDocument {
         Self::load_after(path, registry, overrides, None)
     }
 
+    /// The same of a scene whose text is in no file yet, as if it stood in one at `path`.
+    pub fn of_text(path: &Path, text: String, registry: &TypeRegistry, overrides: &[Override]) -> Self {
+        let texts = HashMap::from([(path.to_owned(), text)]);
+        let (mut document, trail) =
+            trail::follow(|| Self::overridden(path, registry, overrides, None, texts));
+        document.trail = trail;
+        document.looked_over()
+    }
+
     /// The same, without reading again the entities whose text is as it was in an earlier document of the same scene.
     pub fn load_after(
         path: &Path,
@@ -153,7 +162,8 @@ impl SceneDocument {
         overrides: &[Override],
         last: Option<&Self>,
     ) -> Self {
-        let (mut document, trail) = trail::follow(|| Self::overridden(path, registry, overrides, last));
+        let (mut document, trail) =
+            trail::follow(|| Self::overridden(path, registry, overrides, last, HashMap::new()));
         document.trail = trail;
         document.looked_over()
     }
@@ -182,8 +192,14 @@ impl SceneDocument {
         self
     }
 
-    fn overridden(path: &Path, registry: &TypeRegistry, overrides: &[Override], last: Option<&Self>) -> Self {
-        let mut texts = HashMap::new();
+    /// Reads a scene with `texts` in place of what is on disk, and then with each override in it.
+    fn overridden(
+        path: &Path,
+        registry: &TypeRegistry,
+        overrides: &[Override],
+        last: Option<&Self>,
+        mut texts: HashMap<PathBuf, String>,
+    ) -> Self {
         let mut document = loader::load(path, registry, &texts, last);
         for change in overrides {
             if document.has_errors() {

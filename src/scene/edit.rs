@@ -5,8 +5,10 @@ use super::names::nearest;
 use super::parts::{Part, Payload, Shape};
 use super::problem::{Place, Problem, SourceFile};
 use super::tokens::tokens;
+use super::wanted::{is_led, shorthand};
 use bevy_ecs::reflect::ReflectComponent;
-use bevy_reflect::{TypeInfo, TypeRegistry};
+use bevy_reflect::enums::VariantInfo;
+use bevy_reflect::{TypeInfo, TypeRegistration, TypeRegistry};
 use std::path::PathBuf;
 
 /// The path in `File("…")`, where the part is written so.
@@ -67,7 +69,7 @@ pub(super) fn apply(
         && !entity.is_written(around)
         && matches!(registration.type_info(), TypeInfo::Struct(_))
     {
-        return Ok(insert(&entity.place_of(""), component, &format!("({field}: {})", change.value)));
+        return Ok(insert(&entity.place_of(""), component, &format!("({field}: {})", change.value), None));
     }
     if !entity.is_written(around) {
         return Err(fail(
@@ -75,11 +77,40 @@ pub(super) fn apply(
             format!("set the whole: {}.{around}=(…)", entity.name),
         ));
     }
-    Ok(insert(&entity.place_of(around), field, &change.value))
+    let place = entity.place_of(around);
+    let led = if around == component { Led::at(&place, registration) } else { None };
+    Ok(insert(&place, field, &change.value, led))
+}
+
+/// A first field that stands alone and without its name: `File("head.nii")`, `Preset("Object")`.
+struct Led {
+    field: &'static str,
+    /// Whether the word in front stays when the field gets its name.
+    keeps_word: bool,
+}
+
+impl Led {
+    fn at(place: &Place, registration: &TypeRegistration) -> Option<Self> {
+        let part = Part::at(place);
+        let word = part.word()?.text;
+        let (payload, field, keeps_word) = match registration.type_info() {
+            TypeInfo::Struct(info) => {
+                (part.struct_payload(shorthand(info)), info.iter().next()?.name(), false)
+            }
+            TypeInfo::Enum(info) => match info.variant(word)? {
+                VariantInfo::Struct(variant) if is_led(variant) => {
+                    (part.payload(Shape::LedStruct), variant.iter().next()?.name(), true)
+                }
+                _ => return None,
+            },
+            _ => return None,
+        };
+        matches!(payload, Ok(Payload::Led(_))).then_some(Self { field, keeps_word })
+    }
 }
 
 /// Adds a field in front of the others of what stands at `place`, which may be a bare name without parentheses.
-fn insert(place: &Place, field: &str, value: &str) -> (PathBuf, String) {
+fn insert(place: &Place, field: &str, value: &str, led: Option<Led>) -> (PathBuf, String) {
     let text = &place.file.text()[place.bytes.clone()];
     // The parentheses of `Some((…))` that hold fields are the second.
     let is_some = tokens(text).next().is_some_and(|token| &text[token] == "Some");
@@ -88,6 +119,16 @@ fn insert(place: &Place, field: &str, value: &str) -> (PathBuf, String) {
         return splice(place, &format!("{text}({field}: {value})"));
     };
     let inside = place.bytes.start + open.end;
+    if let Some(name) = led {
+        // What stood alone without its name gets it; a struct loses the word in front.
+        let mut text = text.to_owned();
+        let close = text.rfind(')').unwrap_or(text.len());
+        let comma = if text[..close].trim_end().ends_with(',') { " " } else { ", " };
+        text.insert_str(close, &format!("{comma}{field}: {value}"));
+        text.insert_str(open.end, &format!("{}: ", name.field));
+        let from = if name.keeps_word { 0 } else { open.start };
+        return splice(place, &text[from..]);
+    }
     let is_empty =
         tokens(&text[open.end..]).next().is_some_and(|token| text[open.end..][token].starts_with(')'));
     let comma = if is_empty { "" } else { ", " };
@@ -100,7 +141,7 @@ fn head(document: &SceneDocument, change: &Override) -> Option<(PathBuf, String)
         return Some(splice(place, &change.value));
     }
     let whole = document.head_place("").filter(|_| SETTINGS.contains(&field))?;
-    Some(insert(whole, field, &change.value))
+    Some(insert(whole, field, &change.value, None))
 }
 
 /// The names of all components.

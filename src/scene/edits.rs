@@ -65,6 +65,8 @@ use std::sync::Arc;
 #[derive(Resource)]
 pub struct Edits {
     path: PathBuf,
+    /// The text of a scene that is in no file yet.
+    unsaved: Option<String>,
     /// The files as they were last read.
     base: Arc<SceneDocument>,
     /// The same with the draft in it: what is shown.
@@ -87,13 +89,40 @@ impl Edits {
     ///
     /// The problems of a scene that has errors; then the world stays as it is.
     pub fn open(world: &mut World, path: &Path, overrides: &[Override]) -> Result<Self, Vec<Problem>> {
+        Self::open_as(world, path, None, overrides)
+    }
+
+    /// The same for a scene whose text is in no file yet, as if it stood in one at `path`.
+    ///
+    /// # Errors
+    ///
+    /// The problems of a scene that has errors; then the world stays as it is.
+    pub fn of_text(
+        world: &mut World,
+        path: &Path,
+        text: String,
+        overrides: &[Override],
+    ) -> Result<Self, Vec<Problem>> {
+        Self::open_as(world, path, Some(text), overrides)
+    }
+
+    fn open_as(
+        world: &mut World,
+        path: &Path,
+        unsaved: Option<String>,
+        overrides: &[Override],
+    ) -> Result<Self, Vec<Problem>> {
         let registry = registry_of(world);
         let registry = registry.read();
-        let base = Arc::new(SceneDocument::load(path, &registry, &[]));
+        let load = |overrides: &[Override]| match &unsaved {
+            Some(text) => SceneDocument::of_text(path, text.clone(), &registry, overrides),
+            None => SceneDocument::load(path, &registry, overrides),
+        };
+        let base = Arc::new(load(&[]));
         let mut document = base.clone();
         let mut draft = Draft::default();
         if !base.has_errors() && !overrides.is_empty() {
-            document = Arc::new(SceneDocument::load(path, &registry, overrides));
+            document = Arc::new(load(overrides));
             draft = rebase::difference(&base, &document, &registry)
                 .map_err(|error| vec![Problem::error(error.to_string())])?;
         }
@@ -102,6 +131,7 @@ impl Edits {
         }
         let mut edits = Self {
             path: path.to_owned(),
+            unsaved: unsaved.clone(),
             document: base.clone(),
             base,
             draft: Draft::default(),

@@ -34,8 +34,8 @@ pub(super) enum Payload<'a> {
     Unit,
     Values(Vec<Part<'a>>),
     Fields(Vec<Named<'a>>),
-    /// A value without a name in front of fields with names.
-    Led(Part<'a>, Vec<Named<'a>>),
+    /// The value of the first field, which stands alone and without its name.
+    Led(Part<'a>),
 }
 
 /// The shape that a variant's payload is read in.
@@ -44,7 +44,7 @@ pub(super) enum Shape {
     Unit,
     Tuple(usize),
     Struct,
-    /// A struct whose first field may stand without its name.
+    /// A struct whose first field may stand without its name, if it stands alone.
     LedStruct,
 }
 
@@ -215,12 +215,21 @@ impl<'a> Part<'a> {
         starts_well.then(|| Part { whole: self.whole, text: &self.text[..end] })
     }
 
+    /// The parts of a struct: `(name: value, …)`, or `Shorthand(value)` where it has a shorthand for its first field.
+    pub fn struct_payload(&self, shorthand: Option<&str>) -> Result<Payload<'a>, Misfit> {
+        let is_short = self.word().is_some_and(|word| Some(word.text) == shorthand);
+        match is_short.then(|| self.led()).flatten() {
+            Some(first) => Ok(Payload::Led(first)),
+            None => self.fields().map(Payload::Fields),
+        }
+    }
+
     /// What stands behind the name of a variant, read in the shape that the variant has.
     pub fn payload(&self, shape: Shape) -> Result<Payload<'a>, Misfit> {
         if let Shape::LedStruct = shape
-            && let Some((first, fields)) = self.led()
+            && let Some(first) = self.led()
         {
-            return Ok(Payload::Led(first, fields));
+            return Ok(Payload::Led(first));
         }
         let payload = self.parse(|ron| ron.deserialize_enum("", &[], PayloadVisitor(shape)))?;
         Ok(match payload {
@@ -230,42 +239,32 @@ impl<'a> Part<'a> {
         })
     }
 
-    /// The parts of `Variant(value, name: value, …)`, which RON itself does not know; none where the first value has a name as well, or
-    /// the text is otherwise not of this form.
-    fn led(&self) -> Option<(Part<'a>, Vec<Named<'a>>)> {
+    /// The value of `Variant(value)`; none where a name stands in front of it, or the text is otherwise not of this form.
+    fn led(&self) -> Option<Part<'a>> {
         let text = |token: &Range<usize>| &self.text[token.clone()];
-        let mut tokens = tokens(self.text);
-        tokens.next().filter(|_| self.word().is_some())?;
-        tokens.next().filter(|token| text(token) == "(")?;
-        let (mut items, mut item, mut depth) = (Vec::new(), Vec::new(), 0_usize);
-        loop {
-            let token = tokens.next()?;
-            match text(&token) {
-                ")" if depth == 0 => break,
-                "," if depth == 0 => {
-                    items.push(std::mem::take(&mut item));
-                    continue;
-                }
+        let mut tokens = tokens(self.text).skip(usize::from(self.word().is_some()));
+        tokens.next().filter(|token| text(token) == "(" && token.start > 0)?;
+        let inside: Vec<Range<usize>> = tokens.collect();
+        let (last, inside) = inside.split_last()?;
+        // A comma may stand behind it.
+        let inside = inside
+            .strip_suffix(std::slice::from_ref(inside.last()?))
+            .filter(|_| text(&inside[inside.len() - 1]) == ",")
+            .unwrap_or(inside);
+        let is_named = inside.get(1).is_some_and(|second| text(second) == ":");
+        if text(last) != ")" || is_named {
+            return None;
+        }
+        let mut depth = 0_usize;
+        for token in inside {
+            match text(token) {
+                "," | ")" if depth == 0 => return None,
                 "(" | "[" | "{" => depth += 1,
                 ")" | "]" | "}" => depth = depth.checked_sub(1)?,
                 _ => {}
             }
-            item.push(token);
         }
-        // A comma behind the last item ends it.
-        if !item.is_empty() {
-            items.push(item);
-        }
-        let is_named = |item: &Vec<Range<usize>>| item.get(1).is_some_and(|second| text(second) == ":");
-        if tokens.next().is_some() || items.iter().any(Vec::is_empty) || is_named(items.first()?) {
-            return None;
-        }
-        let part =
-            |tokens: &[Range<usize>]| Some(self.sub(&self.text[tokens.first()?.start..tokens.last()?.end]));
-        let named = |item: &Vec<Range<usize>>| {
-            is_named(item).then_some(Named { name: part(&item[..1])?, value: part(&item[2..])? })
-        };
-        Some((part(&items[0])?, items[1..].iter().map(named).collect::<Option<_>>()?))
+        Some(self.sub(&self.text[inside.first()?.start..inside.last()?.end]))
     }
 
     fn subs(&self, values: Vec<&'a str>) -> Vec<Part<'a>> {
@@ -472,24 +471,12 @@ mod tests {
 
     #[test]
     fn a_first_value_may_stand_without_its_name() {
-        let led = |text: &'static str| {
-            let (first, fields) = Part::whole(text).led()?;
-            let fields: Vec<_> = fields.iter().map(|field| (field.name.text, field.value.text)).collect();
-            Some((first.text, fields))
-        };
-        assert_eq!(led("File(\"a, (b).nii\")"), Some(("\"a, (b).nii\"", vec![])));
-        assert_eq!(led("File(/* x */ \"a\", place: Patient, size: (1, [2]), // y\n)"), {
-            Some(("\"a\"", vec![("place", "Patient"), ("size", "(1, [2])")]))
-        });
-        for other in [
-            "File",
-            "File()",
-            "File(path: \"a\")",
-            "File(\"a\", Patient)",
-            "File(\"a\",, b: 1)",
-            "(1)",
-            "File(\"a\")x",
-        ] {
+        let led = |text: &'static str| Part::whole(text).led().map(|first| first.text);
+        assert_eq!(led("File(\"a, (b).nii\")"), Some("\"a, (b).nii\""));
+        assert_eq!(led("File(/* x */ [(1, 2)], // y\n)"), Some("[(1, 2)]"));
+        for other in
+            ["File", "File()", "File(path: \"a\")", "File(\"a\", b: 1)", "File(1, 2)", "(1)", "File(\"a\")x"]
+        {
             assert_eq!(led(other), None, "{other}");
         }
     }

@@ -3,8 +3,8 @@
 use super::layout::{Cursor, Item, Style, Written, insert, remove};
 use super::parts::{Named, Part, Payload, Shape};
 use super::path::is_option;
-use super::wanted::is_led;
-use super::write::{WriteError, Writer, equal};
+use super::wanted::{is_led, shorthand};
+use super::write::{WriteError, Writer, equal, is_there};
 use crate::components::Untagged;
 use bevy_reflect::enums::{Enum, EnumInfo, VariantInfo};
 use bevy_reflect::list::List;
@@ -102,9 +102,23 @@ impl<'r> Patcher<'r> {
             }
             _ if is_leaf => Ok(None),
             (TypeInfo::Struct(info), ReflectRef::Struct(old), ReflectRef::Struct(new)) => {
-                let Ok(written) = part.fields() else { return Ok(None) };
+                let (led, written) = match part.struct_payload(shorthand(info)) {
+                    Ok(Payload::Led(first)) => (Some(first), Vec::new()),
+                    Ok(Payload::Fields(written)) => (None, written),
+                    _ => return Ok(None),
+                };
+                let mut names = info.iter().map(|known| known.name());
+                let first = names.next().and_then(|first| new.field(first));
+                // What stands alone without its name cannot have company, nor be nothing.
+                let is_alone = || {
+                    let mut pairs = names.map(|name| (old.field(name), new.field(name)));
+                    pairs.all(|pair| matches!(pair, (Some(old), Some(new)) if equal(old, new, registry)))
+                };
+                if led.is_some() && !(first.is_some_and(is_there) && is_alone()) {
+                    return Ok(None);
+                }
                 let known = info.iter().map(|known| known.name());
-                self.fields(part, None, &written, known, |name| Some((old.field(name)?, new.field(name)?)))
+                self.fields(part, led, &written, known, |name| Some((old.field(name)?, new.field(name)?)))
                     .map(Some)
             }
             (_, ReflectRef::TupleStruct(old), ReflectRef::TupleStruct(new)) => {
@@ -241,9 +255,17 @@ impl<'r> Patcher<'r> {
                 let shape = if is_led(variant) { Shape::LedStruct } else { Shape::Struct };
                 let (led, written) = match part.payload(shape) {
                     Ok(Payload::Fields(written)) => (None, written),
-                    Ok(Payload::Led(first, written)) => (Some(first), written),
+                    Ok(Payload::Led(first)) => (Some(first), Vec::new()),
                     _ => return Ok(None),
                 };
+                let mut others =
+                    variant.iter().skip(1).map(|known| (old.field(known.name()), new.field(known.name())));
+                let is_alone = others.all(
+                    |pair| matches!(pair, (Some(old), Some(new)) if equal(old, new, self.writer.registry)),
+                );
+                if led.is_some() && !is_alone {
+                    return Ok(None);
+                }
                 let known = variant.iter().map(|known| known.name());
                 let pair = |name: &str| Some((old.field(name)?, new.field(name)?));
                 self.fields(part, led, &written, known, pair).map(Some)

@@ -3,7 +3,7 @@
 use super::names::{nearest, suggestion};
 use super::parts::{Misfit, Named, Part, Payload, Shape};
 use super::problem::{Place, Problem, SourceFile};
-use super::wanted::{excerpt, how_to_write, is_led, is_plain, numbers, wanted};
+use super::wanted::{excerpt, how_to_write, is_led, is_plain, numbers, shorthand, wanted};
 use crate::components::{AssetPath, Names, Range, ReflectValidate, Required, Untagged};
 use bevy_reflect::attributes::CustomAttributes;
 use bevy_reflect::enums::{DynamicEnum, DynamicVariant, EnumInfo, VariantInfo};
@@ -128,11 +128,16 @@ impl<'r> Reader<'r> {
                 self.leaf(part, registration, allowed)
             }
             TypeInfo::Struct(info) => {
-                let fields = self.shaped(part, part.fields(), "`(field: value, …)`")?;
+                let (led, fields) =
+                    match self.shaped(part, part.struct_payload(shorthand(info)), "`(field: value, …)`")? {
+                        Payload::Led(first) => (Some(first), Vec::new()),
+                        Payload::Fields(fields) => (None, fields),
+                        _ => (None, Vec::new()),
+                    };
                 let known: Vec<_> = info.iter().collect();
                 let read = self.fields(
                     part,
-                    None,
+                    led,
                     fields,
                     &known,
                     registration.type_info().type_path_table().short_path(),
@@ -368,9 +373,9 @@ impl<'r> Reader<'r> {
                 let known: Vec<_> = info.iter().collect();
                 DynamicVariant::Struct(self.fields(part, None, fields, &known, variant.name()))
             }
-            (VariantInfo::Struct(info), Payload::Led(first, fields)) => {
+            (VariantInfo::Struct(info), Payload::Led(first)) => {
                 let known: Vec<_> = info.iter().collect();
-                DynamicVariant::Struct(self.fields(part, Some(first), fields, &known, variant.name()))
+                DynamicVariant::Struct(self.fields(part, Some(first), Vec::new(), &known, variant.name()))
             }
             (VariantInfo::Tuple(info), Payload::Values(parts)) => {
                 let mut tuple = DynamicTuple::default();

@@ -7,7 +7,7 @@
 //! ```
 
 use super::document::{Override, SceneDocument};
-use super::edits::Edits;
+use super::edits::{Edits, SaveError};
 use super::problem::{Problem, Problems};
 use super::reconcile::{Changes, reconcile_after};
 use super::watch::{Altered, FileWatch, Found, Reason, Wake, content};
@@ -17,7 +17,7 @@ use crate::loading::{FileChanged, FilesRead};
 use crate::passes::products;
 use crate::report::Report;
 use crate::sources::trail::{FileState, Trail};
-use crate::{mirrors, render};
+use crate::{mirrors, render, whole_file};
 use bevy_app::App;
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::AppTypeRegistry;
@@ -54,6 +54,8 @@ use std::time::Instant;
 /// ```
 pub struct LiveScene {
     path: PathBuf,
+    /// The text of a scene that is in no file yet.
+    unsaved: Option<String>,
     overrides: Vec<Override>,
     /// The last good text, which the world was made from.
     document: Arc<SceneDocument>,
@@ -94,10 +96,20 @@ pub(crate) struct AssetWatch(Weak<FileWatch>);
 impl LiveScene {
     /// Reads a scene into the world of `app` and begins to watch its files. One that has errors leaves the world as it is.
     pub fn open(app: &mut App, path: &Path, overrides: &[Override]) -> Self {
+        Self::open_as(app, path, None, overrides)
+    }
+
+    /// The same for a scene whose text is in no file yet, as if it stood in one at `path`. The files that it names are watched.
+    pub fn open_text(app: &mut App, path: &Path, text: String, overrides: &[Override]) -> Self {
+        Self::open_as(app, path, Some(text), overrides)
+    }
+
+    fn open_as(app: &mut App, path: &Path, unsaved: Option<String>, overrides: &[Override]) -> Self {
         let watch = Arc::new(FileWatch::new());
         app.insert_resource(AssetWatch(Arc::downgrade(&watch)));
         let mut scene = Self {
             path: path.to_owned(),
+            unsaved,
             overrides: overrides.to_vec(),
             document: Arc::default(),
             is_for_editing: false,
@@ -123,11 +135,50 @@ impl LiveScene {
     }
 
     fn begin_edits(&mut self, world: &mut World) -> Result<(), Vec<Problem>> {
-        let edits = Edits::open(world, &self.path, &self.overrides)?;
+        let edits = match &self.unsaved {
+            Some(text) => Edits::of_text(world, &self.path, text.clone(), &self.overrides)?,
+            None => Edits::open(world, &self.path, &self.overrides)?,
+        };
         self.overrides.clear();
         self.document = edits.base().clone();
         world.insert_resource(edits);
         Ok(())
+    }
+
+    /// Writes a scene that is in no file yet, with what was changed of it, into one at `path`, and follows that from here on.
+    ///
+    /// # Errors
+    ///
+    /// If an edit cannot be written, the file cannot, or there is a file already.
+    pub fn save_as(&mut self, app: &mut App, path: &Path) -> Result<(), SaveError> {
+        let world = app.world_mut();
+        let failed = |source| SaveError::File { path: path.to_owned(), source };
+        if path.exists() {
+            return Err(failed(std::io::ErrorKind::AlreadyExists.into()));
+        }
+        let text = match world.remove_resource::<Edits>() {
+            Some(edits) => {
+                let text = edits.text_for(world, path);
+                world.insert_resource(edits);
+                text?
+            }
+            None => self.unsaved.clone().unwrap_or_default(),
+        };
+        whole_file::write(path, text.as_bytes()).map_err(failed)?;
+        self.path = path.to_owned();
+        self.unsaved = None;
+        let found = Found { path: path.to_owned(), state: FileState::of(path), content: None };
+        self.watch.watch(Reason::Text, vec![found]);
+        if self.is_for_editing {
+            self.begin_edits(world).map_err(SaveError::Broken)?;
+        }
+        self.read(app);
+        Ok(())
+    }
+
+    /// Whether the scene is in no file yet.
+    pub fn is_untitled(&self) -> bool {
+        self.unsaved.is_some()
     }
 
     /// Where the scene is.
@@ -180,7 +231,11 @@ impl LiveScene {
         let registry = world.resource::<AppTypeRegistry>().clone();
         let document = {
             let last = Some(self.document.as_ref());
-            SceneDocument::load_after(&self.path, &registry.read(), self.overrides_in_force(world), last)
+            let overrides = self.overrides_in_force(world);
+            match &self.unsaved {
+                Some(text) => SceneDocument::of_text(&self.path, text.clone(), &registry.read(), overrides),
+                None => SceneDocument::load_after(&self.path, &registry.read(), overrides, last),
+            }
         };
         world.resource_mut::<Report>().spent("parse", started);
         self.watch_text(&document);

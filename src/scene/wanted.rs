@@ -1,7 +1,8 @@
 //! What a value should look like, and what was found in its stead, in words.
 
-use crate::components::Leading;
+use crate::components::{Leading, Shorthand};
 use bevy_reflect::enums::{StructVariantInfo, VariantInfo};
+use bevy_reflect::structs::StructInfo;
 use bevy_reflect::{PartialReflect, TypeRegistration};
 
 pub(super) fn how_to_write(variant: &VariantInfo) -> String {
@@ -16,6 +17,11 @@ pub(super) fn how_to_write(variant: &VariantInfo) -> String {
 /// Whether the first field of a variant may stand without its name.
 pub(super) fn is_led(variant: &StructVariantInfo) -> bool {
     variant.iter().next().is_some_and(|field| field.has_attribute::<Leading>())
+}
+
+/// The name in front of the parentheses that stands for the first field of a struct, if one does.
+pub(super) fn shorthand(info: &StructInfo) -> Option<&'static str> {
+    info.iter().next()?.get_attribute::<Shorthand>().map(|shorthand| shorthand.0)
 }
 
 /// What a leaf of this type looks like.

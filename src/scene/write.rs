@@ -2,7 +2,8 @@
 
 use super::layout::{Item, Written};
 use super::path::{is_option, same};
-use crate::components::{AssetPath, Leading, Required, Untagged};
+use super::wanted::shorthand;
+use crate::components::{AssetPath, Leading, Required, Shorthand, Untagged};
 use bevy_reflect::enums::{DynamicEnum, DynamicVariant, Enum, EnumInfo, VariantInfo};
 use bevy_reflect::serde::TypedReflectSerializer;
 use bevy_reflect::structs::DynamicStruct;
@@ -92,8 +93,13 @@ impl<'r> Writer<'r> {
                 let default = self.leaves_out_defaults.then(|| self.default_struct(value, registration));
                 let known: Vec<_> = info.iter().collect();
                 let default = default.flatten();
+                let short = shorthand(info).filter(|_| {
+                    let first = known.first().and_then(|first| fields.field(first.name()));
+                    first.is_some_and(|first| is_there(first))
+                });
+                let open = short.map_or("(".to_owned(), |name| format!("{name}("));
                 self.fields(
-                    "(",
+                    &open,
                     &known,
                     |name| fields.field(name),
                     |name| match default.as_ref()?.reflect_ref() {
@@ -138,8 +144,21 @@ impl<'r> Writer<'r> {
             if !is_required && default(name).is_some_and(|default| same(default, value)) {
                 continue;
             }
-            let leads = items.is_empty() && known[0].name() == name && known[0].has_attribute::<Leading>();
-            items.push(Item { name: (!leads).then(|| name.to_owned()), value: self.value(value)? });
+            items.push(Item { name: Some(name.to_owned()), value: self.value(value)? });
+        }
+        let first = known.first();
+        let is_short =
+            first.is_some_and(|first| first.has_attribute::<Leading>() || first.has_attribute::<Shorthand>());
+        match items.as_mut_slice() {
+            [only]
+                if is_short && open.len() > 1 && only.name.as_deref() == first.map(|first| first.name()) =>
+            {
+                only.name = None;
+            }
+            _ if first.is_some_and(|first| first.has_attribute::<Shorthand>()) => {
+                return Ok(Written::Group { open: "(".into(), items, close: ')', spaced: false });
+            }
+            _ => {}
         }
         Ok(Written::Group { open: open.into(), items, close: ')', spaced: false })
     }
@@ -250,6 +269,14 @@ impl<'r> Writer<'r> {
             type_path: value.reflect_type_path().to_owned(),
             message: error.to_string(),
         })
+    }
+}
+
+/// Whether a value is not `None`.
+pub(super) fn is_there(value: &dyn PartialReflect) -> bool {
+    match value.reflect_ref() {
+        ReflectRef::Enum(holder) => holder.variant_name() != "None",
+        _ => true,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Triangle meshes in memory.
 
 mod assemble;
+mod extremes;
 mod material;
 mod normals;
 mod refine;
@@ -9,6 +10,7 @@ mod statistics;
 use glam::{DVec3, Vec2, Vec3};
 
 pub(super) use assemble::counted;
+pub use extremes::extremes;
 pub use material::{MeshMaterial, MeshPart, MeshSubsurface, TextureImage};
 pub use statistics::MeshStatistics;
 

@@ -15,6 +15,7 @@ pub mod obj;
 mod pieces;
 pub mod procedural;
 pub mod raw;
+pub mod recognise;
 pub mod self_describing;
 mod stored;
 mod stream;
@@ -27,9 +28,11 @@ pub use error::{LayoutError, SourceError};
 pub use mesh::{MeshData, MeshMaterial, MeshPart, MeshStatistics, MeshSubsurface, TextureImage};
 pub use obj::read_obj;
 pub use raw::{RawLayout, read_raw};
+pub use recognise::{Kind, recognise};
 pub use self_describing::{Selection, read_volume};
 pub use volume::{
-    BrickRanges, Endian, Frame, Histogram, Label, Labels, SampleFormat, Samples, Space, VolumeData,
+    BrickRanges, Endian, Frame, Histogram, Label, Labels, SampleFormat, Samples, SliceRanges, Space,
+    VolumeData,
 };
 
 #[cfg(test)]

@@ -33,6 +33,20 @@ pub(super) fn is_nifti(head: &[u8]) -> bool {
     at(344, b"n+1\0") || at(344, b"ni1\0") || at(4, b"n+2\0") || at(4, b"ni2\0")
 }
 
+/// Whether a header says how its axes lie in a patient.
+pub(super) fn has_direction(head: &[u8]) -> bool {
+    let is_set = |place: usize, bytes: usize| {
+        head.get(place..place + bytes).is_some_and(|code| code.iter().any(|byte| *byte != 0))
+    };
+    // `qform_code` and `sform_code`.
+    match head.first_chunk::<4>().map(|size| i32::from_le_bytes(*size)) {
+        Some(size) if [size, size.swap_bytes()].contains(&(BYTES_2 as i32)) => {
+            is_set(344, 4) || is_set(348, 4)
+        }
+        _ => is_set(252, 2) || is_set(254, 2),
+    }
+}
+
 /// Whether it is the header that NIfTI grew out of.
 pub(super) fn is_analyze(head: &[u8]) -> bool {
     let length =

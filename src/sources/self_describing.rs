@@ -104,6 +104,29 @@ fn head(path: &Path) -> Result<(Vec<u8>, bool), SourceError> {
     Ok((head, packed))
 }
 
+/// Whether a volume that begins like this says how it lies in a patient; none for what is no volume.
+pub(super) fn in_patient(head: &[u8], ending: &str) -> Option<bool> {
+    let text = || String::from_utf8_lossy(head).to_lowercase();
+    if nifti::is_nifti(head) {
+        return Some(nifti::has_direction(head));
+    }
+    if head.starts_with(b"NRRD00") {
+        let text = text();
+        let space = text.lines().find_map(|line| line.strip_prefix("space:"));
+        return Some(space.is_some_and(|space| !space.contains("3d")));
+    }
+    let is_vti = || text().contains("<vtkfile") && text().contains("imagedata");
+    let is_tiff = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"].into_iter().any(|magic| head.starts_with(magic));
+    if head.starts_with(vtk::MAGIC) || is_tiff || head.starts_with(b"\x93NUMPY") || is_vti() {
+        return Some(false);
+    }
+    if dicom::is_dicom(head, ending == "dcm") {
+        return Some(true);
+    }
+    is_meta_image(head)
+        .then(|| text().lines().any(|line| line.contains("orientation") && !line.contains('?')))
+}
+
 /// MetaImage has no magic: one of the fields that it must have stands at the beginning of a line.
 fn is_meta_image(head: &[u8]) -> bool {
     let text = String::from_utf8_lossy(head);

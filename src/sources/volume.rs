@@ -1,9 +1,11 @@
 //! Regular grids of samples, the range of values in each brick of them, and how often each value occurs.
 
 mod bricks;
+mod core_range;
 mod frame;
 mod histogram;
 mod labels;
+mod slices;
 
 use std::fmt;
 
@@ -14,6 +16,7 @@ pub use bricks::BrickRanges;
 pub use frame::{Frame, Space};
 pub use histogram::Histogram;
 pub use labels::{Label, Labels};
+pub use slices::SliceRanges;
 
 use super::LayoutError;
 
@@ -188,10 +191,14 @@ pub struct VolumeData {
     pub samples: Samples,
     /// The least and greatest finite sample; (0, 0) if there is none.
     pub range: (f32, f32),
+    /// The same without fill values and a few extreme samples, where those would stretch it to more than twice its length.
+    pub core_range: (f32, f32),
     /// How many samples are not finite.
     pub non_finite: u64,
     /// The range of the finite samples in each brick.
     pub bricks: BrickRanges,
+    /// The range of the finite samples in each slice.
+    pub slices: SliceRanges,
     /// How often each value occurs.
     pub histogram: Histogram,
     /// Where the voxels lie in the world of the file.
@@ -219,14 +226,18 @@ impl VolumeData {
         }
         let (bricks, non_finite) = bricks::ranges_of(&samples, size);
         let range = bricks.range().unwrap_or((0.0, 0.0));
-        let histogram = Histogram::of(&samples, range);
+        let core_range = core_range::core_range(&samples, range);
+        let slices = slices::slices_of(&samples, size);
+        let histogram = Histogram::of(&samples, core_range);
         Ok(Self {
             size,
             spacing,
             samples,
             range,
+            core_range,
             non_finite,
             bricks,
+            slices,
             histogram,
             frame: Frame::centred(size, spacing),
             window: None,

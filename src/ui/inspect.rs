@@ -86,13 +86,25 @@ fn transfer_function(
     let volume = world.get::<LoadedVolume>(entity);
     let presets = editors.presets.get_or_insert_with(|| files_in(folder.join("transfer_functions")));
     let data = TransferFunctionData {
-        domain: volume.map_or((0.0, 1.0), |volume| volume.domain(function.domain)),
+        domain: volume.map_or((0.0, 1.0), |volume| volume.domain(function)),
         histogram: volume.map(|volume| &volume.data.histogram),
         registry,
         folder: &folder,
         presets,
     };
-    editors.of.entry(entity).or_default().show(ui, name, function, &data)
+    let editor = editors.of.entry(entity).or_default();
+    if function.preset.is_none() {
+        return editor.show(ui, name, function, &data);
+    }
+    // What a preset makes is shown; whoever changes it has points of their own from then on.
+    let mut own = function.in_force(data.histogram, data.domain);
+    let edits = editor.show(ui, name, &own.clone(), &data);
+    let Some(last) = edits.last() else { return edits };
+    let finished = last.finished;
+    match edits.iter().try_for_each(|edited| edited.apply(&mut own)) {
+        Ok(()) => vec![Edited { path: String::new(), value: Box::new(own), finished }],
+        Err(_) => edits,
+    }
 }
 
 /// The RON files of a folder, by name; none where there is no such folder.

@@ -7,12 +7,11 @@ mod file;
 mod handles;
 mod picture;
 mod plot;
-mod preset;
 mod shown;
 mod toolbar;
 
+pub use crate::components::Preset;
 pub use file::{TransferFunctionFileError, read_transfer_function, write_transfer_function};
-pub use preset::Preset;
 
 use super::edited::Edited;
 use crate::components::TransferFunction;

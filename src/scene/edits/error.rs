@@ -115,6 +115,9 @@ pub enum SaveError {
         /// What the system says.
         source: io::Error,
     },
+    /// The scene is in no file yet.
+    #[error("the scene is in no file yet; choose one with *Save as*")]
+    Untitled,
     /// A file changed each time that it was to be written.
     #[error("the files are being changed all the time by somebody else; save again when that is over")]
     Busy,
@@ -129,6 +132,7 @@ fn help(kind: io::ErrorKind) -> &'static str {
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             "make the file and its folder writable and save again"
         }
+        io::ErrorKind::AlreadyExists => "choose another name",
         _ => "the edits are kept; save again when that is mended",
     }
 }

@@ -4,10 +4,13 @@ use super::draft::{Draft, DraftComponent};
 use super::shared::value_of_file;
 use super::texts::{Changed, texts};
 use super::{EditError, Edits, SaveError, registry_of};
+use crate::components::{Mesh, Volume};
 use crate::scene::document::{SceneDocument, identity};
+use crate::scene::of_files::relative_to;
 use crate::scene::problem::SourceFile;
+use crate::scene::write::quoted;
 use crate::scene::write::{WriteError, equal, to_ron};
-use crate::whole_file::Staged;
+use crate::whole_file::{Staged, folder_of};
 use bevy_ecs::world::World;
 use bevy_reflect::{Reflect, TypeRegistry};
 use std::collections::BTreeMap;
@@ -25,6 +28,27 @@ impl Edits {
         Ok(texts.map(|file| (file.before.path().to_owned(), file.text)).collect())
     }
 
+    /// The text of a scene that is in no file yet, with its edits, as it would stand in a file at `path`: what it names by relative paths
+    /// is named as seen from there.
+    ///
+    /// # Errors
+    ///
+    /// If an edit cannot be written.
+    pub fn text_for(&self, world: &mut World, path: &Path) -> Result<String, EditError> {
+        let mut text = self.preview(world)?.remove(&self.path).or(self.unsaved.clone()).unwrap_or_default();
+        let folder = folder_of(path);
+        for component in self.document.entities.iter().flat_map(|entity| entity.components.iter()) {
+            let value = component.value.as_any();
+            let named = match (value.downcast_ref::<Mesh>(), value.downcast_ref::<Volume>()) {
+                (Some(Mesh::File(path)), _) => path,
+                (_, Some(Volume::File { path, .. } | Volume::Raw { path, .. })) => path,
+                _ => continue,
+            };
+            text = text.replace(&quoted(named.written()), &quoted(&relative_to(named.path(), &folder)));
+        }
+        Ok(text)
+    }
+
     /// Writes every edit to the file that it came from, and gives the files that were written.
     ///
     /// Files that somebody else has changed since they were read are merged first, as by [`reload`](Self::reload). Each file is there
@@ -35,6 +59,9 @@ impl Edits {
     ///
     /// If edits are in conflict with what the files have now, those have errors, or cannot be written.
     pub fn save(&mut self, world: &mut World) -> Result<Vec<PathBuf>, SaveError> {
+        if self.unsaved.is_some() {
+            return Err(SaveError::Untitled);
+        }
         let registry = registry_of(world);
         for _ in 0..MOST_ATTEMPTS {
             let theirs = SceneDocument::load(&self.path, &registry.read(), &[]);

@@ -11,8 +11,8 @@ use super::{MAX_SAMPLE_MAGNITUDE, Samples, luminance};
 pub struct Histogram {
     /// Samples in each bin, from the least value to the greatest; always [`Histogram::BINS`] of them.
     pub bins: Vec<u64>,
-    /// Where the first bin begins and the last one ends, in values of the data: the least and greatest finite sample, or of
-    /// 8-bit formats all that they can hold and half a value around it. Both are equal where all samples are.
+    /// Where the first bin begins and the last one ends, in values of the data: the volume's `core_range`, or of 8-bit formats all that
+    /// they can hold and half a value around it. What lies beyond is in the first and the last bin. Both are equal where all samples are.
     pub range: (f32, f32),
     /// Whether a bin is one value.
     one_value_a_bin: bool,
@@ -22,7 +22,7 @@ impl Histogram {
     /// How many bins there are.
     pub const BINS: usize = 256;
 
-    /// Counts samples whose finite ones lie within `range`; looks at each once.
+    /// Counts samples; looks at each once.
     pub(super) fn of(samples: &Samples, range: (f32, f32)) -> Self {
         let of_bytes =
             |bins, least: f32| Self { bins, range: (least - 0.5, least + 255.5), one_value_a_bin: true };

@@ -1,10 +1,10 @@
 //! Presets, what is in view, files.
 
 use super::file::{read_transfer_function, write_transfer_function};
-use super::preset::Preset;
 use super::shown::Shown;
 use super::{Selected, TransferFunctionEditor};
 use crate::components::IsoValue;
+use crate::components::Preset;
 use egui::{Key, TextEdit, Ui, vec2};
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! Transfer functions to begin with, fitted to the data.
 
-use crate::components::{ControlPoint, IsoValue, TransferFunction};
+use super::{ControlPoint, IsoValue, TransferFunction};
 use crate::sources::Histogram;
 use glam::Vec3;
 
@@ -20,15 +20,47 @@ pub enum Preset {
     Glow,
     /// Pale blue with bright cores.
     Mist,
+    /// Bones, in Hounsfield units.
+    CtBone,
+    /// Skin, fat and organs over bones, in Hounsfield units.
+    CtSoftTissue,
+    /// The lungs and their airways, in Hounsfield units.
+    CtLungs,
+    /// Vessels with contrast agent, and bones, in Hounsfield units.
+    CtVessels,
+    /// Skin, brain and what is bright, of magnetic resonance.
+    Mr,
 }
+
+/// The names of [`Preset::ALL`].
+pub(super) const NAMES: [&str; 11] = {
+    let mut names = [""; 11];
+    let mut index = 0;
+    while index < names.len() {
+        names[index] = Preset::ALL[index].name();
+        index += 1;
+    }
+    names
+};
 
 impl Preset {
     /// All of them, simple ones first.
-    pub const ALL: [Self; 6] =
-        [Self::Ramp, Self::Object, Self::Surface, Self::Shells, Self::Glow, Self::Mist];
+    pub const ALL: [Self; 11] = [
+        Self::Ramp,
+        Self::Object,
+        Self::Surface,
+        Self::Shells,
+        Self::Glow,
+        Self::Mist,
+        Self::CtBone,
+        Self::CtSoftTissue,
+        Self::CtLungs,
+        Self::CtVessels,
+        Self::Mr,
+    ];
 
     /// What it is called.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Ramp => "Ramp",
             Self::Object => "Object",
@@ -36,6 +68,11 @@ impl Preset {
             Self::Shells => "Shells",
             Self::Glow => "Glow",
             Self::Mist => "Mist",
+            Self::CtBone => "CT bone",
+            Self::CtSoftTissue => "CT soft tissue",
+            Self::CtLungs => "CT lungs",
+            Self::CtVessels => "CT vessels",
+            Self::Mr => "MR",
         }
     }
 
@@ -48,6 +85,19 @@ impl Preset {
             Self::Shells => "Three level sets, each within the one before",
             Self::Glow => "A veil of violet with red, orange and white inside",
             Self::Mist => "Pale blue with bright cores",
+            Self::CtBone => "Bones, in Hounsfield units",
+            Self::CtSoftTissue => "Skin, fat and organs over bones, in Hounsfield units",
+            Self::CtLungs => "The lungs and their airways, in Hounsfield units",
+            Self::CtVessels => "Vessels with contrast agent, and bones, in Hounsfield units",
+            Self::Mr => "Skin, brain and what is bright, of magnetic resonance",
+        }
+    }
+
+    /// The data values that it is about, if it is in units.
+    pub fn domain(self) -> Option<(f32, f32)> {
+        match self {
+            Self::CtBone | Self::CtSoftTissue | Self::CtLungs | Self::CtVessels => Some((-1024.0, 2048.0)),
+            _ => None,
         }
     }
 
@@ -86,6 +136,57 @@ impl Preset {
                 ],
                 Vec::new(),
             ),
+            // Ranges of tissues in Hounsfield units: Kalender, Computed Tomography (2011), fig. 1.9.
+            Self::CtBone => (
+                vec![
+                    at(150.0, (0.55, 0.25, 0.15), 0.0),
+                    at(300.0, (0.85, 0.65, 0.45), 0.1),
+                    at(700.0, (0.95, 0.90, 0.78), 0.4),
+                    at(1500.0, (1.0, 1.0, 0.96), 0.8),
+                ],
+                Vec::new(),
+            ),
+            Self::CtSoftTissue => (
+                vec![
+                    at(-250.0, (0.80, 0.55, 0.40), 0.0),
+                    at(-100.0, (0.88, 0.68, 0.45), 0.03),
+                    at(0.0, (0.75, 0.35, 0.25), 0.06),
+                    at(80.0, (0.80, 0.40, 0.32), 0.12),
+                    at(250.0, (0.92, 0.80, 0.65), 0.2),
+                    at(1000.0, (1.0, 1.0, 0.95), 0.7),
+                ],
+                Vec::new(),
+            ),
+            Self::CtLungs => (
+                vec![
+                    at(-980.0, (0.30, 0.45, 0.70), 0.0),
+                    at(-900.0, (0.45, 0.60, 0.85), 0.015),
+                    at(-700.0, (0.85, 0.60, 0.55), 0.04),
+                    at(-500.0, (0.90, 0.50, 0.45), 0.02),
+                    at(-400.0, (0.90, 0.50, 0.45), 0.0),
+                ],
+                Vec::new(),
+            ),
+            Self::CtVessels => (
+                vec![
+                    at(130.0, (0.60, 0.08, 0.06), 0.0),
+                    at(200.0, (0.80, 0.12, 0.08), 0.25),
+                    at(400.0, (0.95, 0.35, 0.20), 0.5),
+                    at(550.0, (0.95, 0.88, 0.75), 0.5),
+                    at(1500.0, (1.0, 1.0, 0.96), 0.8),
+                ],
+                Vec::new(),
+            ),
+            Self::Mr => (
+                vec![
+                    at(start, (0.45, 0.22, 0.15), 0.0),
+                    at(middle, (0.65, 0.42, 0.32), 0.02),
+                    at(low, (0.80, 0.60, 0.50), 0.08),
+                    at(high, (0.92, 0.84, 0.78), 0.35),
+                    at(top, (1.0, 0.97, 0.90), 0.7),
+                ],
+                Vec::new(),
+            ),
             Self::Surface => (Vec::new(), vec![level(middle, (0.90, 0.78, 0.60), 3.0)]),
             Self::Shells => (
                 Vec::new(),
@@ -116,7 +217,7 @@ impl Preset {
                 Vec::new(),
             ),
         };
-        TransferFunction { points, iso, ..function.clone() }
+        TransferFunction { preset: None, points, iso, ..function.clone() }
     }
 }
 

@@ -1,0 +1,118 @@
+//! What a file is, by how it begins: for those who are given a file and not told.
+
+use super::{file, raw::GZIP_MAGIC, self_describing};
+use flate2::read::MultiGzDecoder;
+use std::io::Read;
+use std::path::Path;
+
+/// Bytes of a file that are looked at.
+const HEAD: u64 = 4096;
+
+/// What can be shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Triangles.
+    Mesh,
+    /// Samples on a grid.
+    Volume {
+        /// Whether the file says how it lies in a patient.
+        in_patient: bool,
+    },
+}
+
+/// Endings of meshes and of volumes that are read: they count where the content says nothing, so that its reader says what is wrong.
+const MESHES: [&str; 5] = ["obj", "ply", "stl", "gltf", "glb"];
+const VOLUMES: [&str; 13] =
+    ["nrrd", "nhdr", "nii", "hdr", "mha", "mhd", "dcm", "ima", "vtk", "vti", "tif", "tiff", "npy"];
+
+/// What the file, or folder of DICOM slices, is; none for what is neither, cannot be opened or is not there.
+pub fn recognise(path: &Path) -> Option<Kind> {
+    if path.is_dir() {
+        return Some(Kind::Volume { in_patient: true });
+    }
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if ending == "ron" {
+        return None;
+    }
+    let head = head(path)?;
+    let stem = path.file_stem().map(Path::new).and_then(Path::extension);
+    let stem = stem.map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let inner = if ending == "gz" { stem } else { ending };
+    let by_name = || {
+        if MESHES.contains(&inner.as_str()) {
+            return Some(Kind::Mesh);
+        }
+        VOLUMES.contains(&inner.as_str()).then_some(Kind::Volume { in_patient: false })
+    };
+    if is_mesh(&head) {
+        return Some(Kind::Mesh);
+    }
+    self_describing::in_patient(&head, &inner).map(|in_patient| Kind::Volume { in_patient }).or_else(by_name)
+}
+
+/// The first bytes of a file, unpacked if it is gzipped.
+fn head(path: &Path) -> Option<Vec<u8>> {
+    let (mut file, _) = file::open(path).ok()?;
+    let packed = file::begins_with(path, &mut file, &GZIP_MAGIC).ok()?;
+    let mut head = Vec::new();
+    if packed {
+        // As much as comes out of a stream that breaks.
+        _ = MultiGzDecoder::new(file).take(HEAD).read_to_end(&mut head);
+    } else {
+        file.take(HEAD).read_to_end(&mut head).ok()?;
+    }
+    Some(head)
+}
+
+fn is_mesh(head: &[u8]) -> bool {
+    let is_ply = head.starts_with(b"ply\n") || head.starts_with(b"ply\r");
+    let is_stl = head.starts_with(b"solid ") && String::from_utf8_lossy(head).contains("facet normal");
+    is_ply || is_stl || head.starts_with(b"glTF") || is_obj(head)
+}
+
+/// OBJ has no magic: its first statement that is no comment is one of few, and a vertex follows soon.
+fn is_obj(head: &[u8]) -> bool {
+    let Ok(text) = std::str::from_utf8(&head[..head.len().saturating_sub(4)]) else { return false };
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut statements =
+        text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
+    let word = |line: &str| line.split_whitespace().next().unwrap_or_default().to_owned();
+    let first = statements.next().map(word).unwrap_or_default();
+    let is_first = ["v", "mtllib", "o", "g", "vt", "vn"].contains(&first.as_str());
+    let is_vertex = |line: &str| {
+        word(line) == "v"
+            && line.split_whitespace().skip(1).take(3).filter_map(|n| n.parse::<f64>().ok()).count() == 3
+    };
+    is_first && text.lines().any(is_vertex)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_known_by_how_they_begin() {
+        let folder = tempfile::tempdir().unwrap();
+        let recognised = |name: &str, bytes: &[u8]| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, bytes).unwrap();
+            recognise(&path)
+        };
+        let obj = b"# a comment\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        let volume = Some(Kind::Volume { in_patient: false });
+        let patient = Some(Kind::Volume { in_patient: true });
+        assert_eq!(recognised("a.obj", obj), Some(Kind::Mesh));
+        assert_eq!(recognised("model", obj), Some(Kind::Mesh));
+        assert_eq!(recognised("a.ply", b"ply\nformat ascii 1.0\n"), Some(Kind::Mesh));
+        assert_eq!(recognised("a.nrrd", b"NRRD0004\ntype: uchar\n"), volume);
+        assert_eq!(recognised("b.nrrd", b"NRRD0004\nspace: left-posterior-superior\n"), patient);
+        assert_eq!(recognised("a.vtk", b"# vtk DataFile Version 3.0\n"), volume);
+        assert_eq!(recognised("empty.stl", b""), Some(Kind::Mesh));
+        assert_eq!(recognised("notes.txt", b"v for victory\nno numbers\n"), None);
+        assert_eq!(recognised("a.ron", b"v 0 0 0\n"), None);
+        assert_eq!(recognised("scene", b"( entities: {} )"), None);
+        assert_eq!(recognise(folder.path()), patient);
+        assert_eq!(recognise(&folder.path().join("missing.obj")), None);
+    }
+}
