@@ -10,11 +10,12 @@ fn classified_at(place: vec3f) -> vec4f {
     if brick_distance(place) > 0.0 {
         return vec4f(0.0);
     }
-    let at = entry_at(place);
+    let voxel = voxel_in(place);
+    let at = entry_of(voxel);
     let below = clamp(floor(at), 0.0, classified.last - 1.0);
     let entry = vec2u(u32(below), 0u);
     let found = mix(textureLoad(table, entry, 0), textureLoad(table, entry + vec2u(1u, 0u), 0), at - below);
-    return select(found, vec4f(0.0), at < 0.0);
+    return vec4f(found.rgb, found.a * voxel.shown);
 }
 
 struct Cells {

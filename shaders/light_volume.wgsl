@@ -34,36 +34,52 @@ struct Segments {
 
 // The transfer function up to a place in the table: `Cumulative` in `src/optics/transfer.rs`.
 struct Passed {
-    // Less than 0 where a sample is missing.
     entry: f32,
     depth: vec2f,
     layers: f32,
     sigma_t: f32,
+    // How much of the medium is there.
+    shown: f32,
 }
 
 fn passed_at(place: vec3f) -> Passed {
-    let at = entry_at(place);
+    let voxel = voxel_in(place);
+    return passed_to(entry_of(voxel), voxel.shown);
+}
+
+fn passed_to(at: f32, shown: f32) -> Passed {
     let below = clamp(floor(at), 0.0, classified.last - 1.0);
     let entry = vec2u(u32(below), 0u);
     let low = textureLoad(table, entry, 0);
     let high = textureLoad(table, entry + vec2u(1u, 0u), 0);
-    let part = max(at - below, 0.0);
+    let part = at - below;
     let rise = high.w - low.w;
     let more = part * (low.w + 0.5 * part * rise);
-    return Passed(at, vec2f(low.x, low.y + more), mix(low.z, high.z, part), low.w + part * rise);
+    return Passed(at, vec2f(low.x, low.y + more), mix(low.z, high.z, part), low.w + part * rise, shown);
 }
 
 // Optical depth of a segment between two places.
-fn depth_between(front: Passed, back: Passed) -> f32 {
-    if front.entry < 0.0 || back.entry < 0.0 {
-        return 0.0;
+fn depth_between(one: Passed, other: Passed) -> f32 {
+    var front = one;
+    var back = other;
+    if ANY_PARTIAL {
+        // What is missing has no value: then the other's goes on.
+        if front.shown == 0.0 {
+            front = back;
+            front.shown = 0.0;
+        }
+        if back.shown == 0.0 {
+            back = front;
+            back.shown = 0.0;
+        }
     }
     let across = back.entry - front.entry;
     let integral = (back.depth.x - front.depth.x) + (back.depth.y - front.depth.y);
     // Next to each other the integral has no digits left, and the function no room to bend.
     let even = 0.5 * (front.sigma_t + back.sigma_t);
     let mean = select(integral / select(across, 1.0, across == 0.0), even, abs(across) < 0.01);
-    return segments.length * max(mean, 0.0) + abs(back.layers - front.layers);
+    let shown = 0.5 * (front.shown + back.shown);
+    return shown * (segments.length * max(mean, 0.0) + abs(back.layers - front.layers));
 }
 
 // A column on its way.
@@ -156,7 +172,8 @@ fn sweep(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) grou
         march.part = max(ceil(entry) - entry, 1e-6);
         // Where nothing is passed yet the mean is what is here.
         let place = march.start + march.step * slice;
-        let mean = passed_at(place).sigma_t * segments.length * f32(segments.count);
+        let here = passed_at(place);
+        let mean = here.shown * here.sigma_t * segments.length * f32(segments.count);
         textureStore(light_volume, vec3u(texel, u32(slice)), vec4f(mean, 0.0, 0.0, 0.0));
         follow(&march, slice, end, texel);
         slice = end + 1.0;

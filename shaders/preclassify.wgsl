@@ -1,14 +1,14 @@
 // The transfer function at each voxel of a volume, for those that interpolate what it gives.
 //
 // reads  a volume texture, its lookup table: colour, sigma_t per scene unit
-// writes rgba16float, a texel a voxel: colour times sigma_t, and sigma_t, both as shares of the greatest; what is not finite, far more
+// writes rgba16float, a texel a voxel: colour times sigma_t, and sigma_t, both as shares of the greatest; nothing where a sample is missing
+
+#import texels
 
 struct Voxels {
     // Place in the table = texel * scale + offset.
     lookup_scale: f32,
     lookup_offset: f32,
-    // Texels beyond this are not finite.
-    sentinel: f32,
     // What colour and extinction are shares of.
     greatest_colour: f32,
     greatest_extinction: f32,
@@ -19,9 +19,6 @@ struct Voxels {
 @group(0) @binding(2) var entries: texture_2d<f32>;
 @group(0) @binding(3) var classified: texture_storage_3d<rgba16float, write>;
 
-// The greatest half-precision number.
-const FAR_BEYOND = 65504.0;
-
 @compute @workgroup_size(64)
 fn preclassify(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
     let size = textureDimensions(samples);
@@ -31,13 +28,13 @@ fn preclassify(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
     if voxel.z >= size.z {
         return;
     }
-    let texel = textureLoad(samples, voxel, 0).r;
+    let here = voxel_of(textureLoad(samples, voxel, 0));
     let last = f32(textureDimensions(entries).x - 1u);
-    let place = clamp(texel * voxels.lookup_scale + voxels.lookup_offset, 0.0, 1.0) * last;
+    let place = clamp(here.texel * voxels.lookup_scale + voxels.lookup_offset, 0.0, 1.0) * last;
     let below = min(floor(place), last - 1.0);
     let entry = vec2u(u32(below), 0u);
     let found = mix(textureLoad(entries, entry, 0), textureLoad(entries, entry + vec2u(1u, 0u), 0), place - below);
-    let extinction = found.a / voxels.greatest_extinction;
+    let extinction = here.shown * found.a / voxels.greatest_extinction;
     let shares = vec4f(found.rgb / voxels.greatest_colour * extinction, extinction);
-    textureStore(classified, voxel, select(shares, vec4f(0.0, 0.0, 0.0, FAR_BEYOND), texel > voxels.sentinel));
+    textureStore(classified, voxel, shares);
 }

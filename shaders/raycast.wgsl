@@ -45,8 +45,8 @@ struct VolumeInstance {
     diffuse: f32,
     specular: f32,
     shininess: f32,
-    // Texels beyond this touch a sample that is not finite.
-    sentinel: f32,
+    // Where samples are missing: how far below 0 what is missing counts as, for gradients, in texels.
+    edge: f32,
     // Scene units to a unit of eye space.
     reach: f32,
     // Mean cosine of scattering.
@@ -116,7 +116,6 @@ struct Lookup {
     last: f32,
     scale: f32,
     offset: f32,
-    sentinel: f32,
 }
 
 fn brick_distance(bricks: vec3u, first: u32, at: vec3u) -> f32 {
@@ -129,8 +128,7 @@ fn look_up(index: u32, lookup: Lookup, texel: f32) -> vec4f {
     let place = clamp(texel * lookup.scale + lookup.offset, 0.0, 1.0) * lookup.last;
     let below = min(floor(place), lookup.last - 1.0);
     let entry = vec2u(u32(below), index);
-    let found = mix(textureLoad(tables, entry, 0), textureLoad(tables, entry + vec2u(1u, 0u), 0), place - below);
-    return vec4f(found.rgb, select(found.a, 0.0, texel > lookup.sentinel));
+    return mix(textureLoad(tables, entry, 0), textureLoad(tables, entry + vec2u(1u, 0u), 0), place - below);
 }
 
 // 1 - exp(-depth), without the cancellation that many thin segments would add up.
@@ -148,16 +146,30 @@ struct Normal {
     steepness: f32,
 }
 
-fn normal_at(index: u32, volume: VolumeInstance, place: vec3f, centre: f32, ray: Ray) -> Normal {
+// What gradients are taken of. What is missing counts as less than any value, so that the medium's end is a surface.
+fn field_at(index: u32, volume: VolumeInstance, place: vec3f) -> f32 {
+    let voxel = voxel_at(index, place);
+    if ANY_PARTIAL {
+        return (voxel.texel + volume.edge) * voxel.share;
+    }
+    return voxel.texel;
+}
+
+fn normal_at(index: u32, volume: VolumeInstance, place: vec3f, ray: Ray) -> Normal {
     let voxel = 1.0 / volume.size;
     let x = vec3f(voxel.x, 0.0, 0.0);
     let y = vec3f(0.0, voxel.y, 0.0);
     let z = vec3f(0.0, 0.0, voxel.z);
-    var ahead = vec3f(texel_at(index, place + x), texel_at(index, place + y), texel_at(index, place + z));
-    var behind = vec3f(texel_at(index, place - x), texel_at(index, place - y), texel_at(index, place - z));
-    let sentinel = vec3f(volume.sentinel);
-    ahead = select(ahead, vec3f(centre), ahead > sentinel);
-    behind = select(behind, vec3f(centre), behind > sentinel);
+    let ahead = vec3f(
+        field_at(index, volume, place + x),
+        field_at(index, volume, place + y),
+        field_at(index, volume, place + z),
+    );
+    let behind = vec3f(
+        field_at(index, volume, place - x),
+        field_at(index, volume, place - y),
+        field_at(index, volume, place - z),
+    );
     // The gradient is a covector: it goes through the transpose.
     let gradient = (vec4f((ahead - behind) * volume.size, 0.0) * volume.texture_from_eye).xyz;
     let steepest = max(abs(gradient.x), max(abs(gradient.y), abs(gradient.z)));
@@ -177,8 +189,8 @@ fn highlight(normal: Normal, to_light: vec3f, shininess: f32, ray: Ray) -> f32 {
 }
 
 // Blinn-Phong with the gradient of the field for a normal.
-fn shade(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, centre: f32, ray: Ray) -> vec3f {
-    let normal = normal_at(index, volume, place, centre, ray);
+fn shade(index: u32, volume: VolumeInstance, colour: vec3f, place: vec3f, ray: Ray) -> vec3f {
+    let normal = normal_at(index, volume, place, ray);
     var diffuse = vec3f(0.0);
     var specular = vec3f(0.0);
     for (var i = 0u; i < frame.light_count; i += 1u) {
@@ -196,7 +208,6 @@ struct Sample {
     // Where it is: as a share of the volume, and along the ray from where it enters.
     place: vec3f,
     along: f32,
-    texel: f32,
     // 1 - albedo f.
     thinned: f32,
 }
@@ -213,7 +224,7 @@ fn scatter(index: u32, volume: VolumeInstance, sample: Sample, ray: Ray, ways: a
     var specular = vec3f(0.0);
     var normal: Normal;
     if ANY_HIGHLIGHT {
-        normal = normal_at(index, volume, place, sample.texel, ray);
+        normal = normal_at(index, volume, place, ray);
     }
     for (var i = 0u; i < LIGHTS; i += 1u) {
         let depth = light_depth_on(volume.first_sweep + i, ways[i], sample.along);
@@ -258,7 +269,7 @@ fn thinning(volume: VolumeInstance, colour: vec3f) -> f32 {
 // What a piece of the medium sends to the eye, per share that it absorbs.
 fn source(index: u32, volume: VolumeInstance, sample: Sample, ray: Ray, ways: array<LightWay, LIGHT_WAYS>) -> vec3f {
     if ANY_GRADIENT && volume.lighting == 1u {
-        return shade(index, volume, sample.colour, sample.place, sample.texel, ray);
+        return shade(index, volume, sample.colour, sample.place, ray);
     }
     if ANY_SCATTERING && (volume.lighting == 2u || volume.lighting >= 4u) {
         return scatter(index, volume, sample, ray, ways);
@@ -270,35 +281,32 @@ fn source(index: u32, volume: VolumeInstance, sample: Sample, ray: Ray, ways: ar
 struct Found {
     colour: vec3f,
     extinction: f32,
-    texel: f32,
 }
 
 fn found_at(index: u32, volume: VolumeInstance, lookup: Lookup, classification: u32, at: vec3f) -> Found {
     if ANY_PRE && classification == PRE {
         let found = pre_classified(index, at, volume.greatest_colour, volume.greatest_extinction);
-        return Found(found.rgb, found.a, 0.0);
+        return Found(found.rgb, found.a);
     }
-    let texel = texel_at(index, at);
-    let found = look_up(index, lookup, texel);
-    return Found(found.rgb, found.a, texel);
+    let voxel = voxel_at(index, at);
+    let found = look_up(index, lookup, voxel.texel);
+    return Found(found.rgb, found.a * voxel.shown);
 }
 
 // Samples that are lit together: what they absorb, and sums of what they are by what each shows.
 struct Together {
     colour: vec3f,
     along: f32,
-    texel: f32,
     depth: f32,
     alpha: f32,
 }
 
 // The same with one more.
-fn joined(all: Together, colour: vec3f, depth: f32, along: f32, texel: f32) -> Together {
+fn joined(all: Together, colour: vec3f, depth: f32, along: f32) -> Together {
     let shown = (1.0 - all.alpha) * absorbed(depth);
     return Together(
         all.colour + shown * colour,
         all.along + shown * along,
-        all.texel + shown * texel,
         all.depth + depth,
         all.alpha + shown,
     );
@@ -341,7 +349,7 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let classification = classification_of(index);
         let integrated = ANY_PRE_INTEGRATED && classification == PRE_INTEGRATED;
         let alone = !ANY_OFTEN || integrated || volume.lighting < 4u;
-        let lookup = Lookup(f32(volume.table_entries - 1u), volume.lookup_scale, volume.lookup_offset, volume.sentinel);
+        let lookup = Lookup(f32(volume.table_entries - 1u), volume.lookup_scale, volume.lookup_offset);
         let direction = (volume.texture_from_eye * vec4f(ray.direction, 0.0)).xyz;
         let start = (volume.texture_from_eye * vec4f(ray.origin, 1.0)).xyz + direction * enter;
         var ways: array<LightWay, LIGHT_WAYS>;
@@ -378,10 +386,10 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
             }
             let end = min(done + RUN, turn);
             samples -= done;
-            var front = 0.0;
-            var back = 0.0;
+            var front: Voxel;
+            var back: Voxel;
             if integrated {
-                back = texel_at(index, start + direction * (done * volume.step));
+                back = voxel_at(index, start + direction * (done * volume.step));
             }
             loop {
                 if done >= end {
@@ -397,18 +405,18 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                     let length = min(volume.step, leave - enter - done * volume.step);
                     if integrated {
                         front = back;
-                        back = texel_at(index, start + direction * (done * volume.step + length));
+                        back = voxel_at(index, start + direction * (done * volume.step + length));
                         let found = pre_integrated(index, lookup, front, back, length / volume.step);
                         var at = 0.5;
                         if ANY_LIT {
                             at = surface_in(index, lookup, front, back);
                         }
                         let along = done * volume.step + at * length;
-                        together = joined(together, found.rgb, found.a, along, mix(front, back, at));
+                        together = joined(together, found.rgb, found.a, along);
                     } else {
                         let along = done * volume.step + 0.5 * length;
                         let found = found_at(index, volume, lookup, classification, start + direction * along);
-                        together = joined(together, found.colour, found.extinction * volume.reach * length, along, found.texel);
+                        together = joined(together, found.colour, found.extinction * volume.reach * length, along);
                     }
                     done += 1.0;
                     let is_enough = alone || together.depth * seen > DEPTH_TOGETHER || done >= until_together;
@@ -419,14 +427,11 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                 let alpha = together.alpha;
                 let depth = together.depth;
                 let part = 1.0 / max(alpha, 1e-30);
-                var sample = Sample(together.colour * part, vec3f(0.0), together.along * part, together.texel * part, 1.0);
+                var sample = Sample(together.colour * part, vec3f(0.0), together.along * part, 1.0);
                 sample.thinned = thinning(volume, sample.colour);
                 var colour = sample.colour;
                 if ANY_LIT {
                     sample.place = start + direction * sample.along;
-                    if ANY_PRE && classification == PRE {
-                        sample.texel = texel_at(index, sample.place);
-                    }
                     colour = source(index, volume, sample, ray, ways);
                 }
                 if ANY_PEAK {

@@ -85,13 +85,18 @@ pub fn all() -> Vec<Mirror> {
 pub fn generated_modules() -> Vec<(&'static str, String)> {
     use crate::components::Classification::{Pre, PreIntegrated};
     use crate::gpu::Filtering::{Sampler, Shader};
+    use crate::gpu::Texels::{Masked, Values};
     use crate::passes::raycast::Scattered::{Nothing, TowardsEye};
+    use crate::passes::voxels::{self, Reading};
+    let plain = Reading { filtering: Sampler, texels: Values };
+    let masked = Reading { filtering: Shader, texels: Masked };
     let count = passes::light_volume::through::VeilCount { volumes: 2, lights: 1 };
     // Behind the bindings of every shader that has these modules.
     let (volumes, first, classified) = (16, 18, 32);
     let [light_volumes, veils] = passes::light_volume::through::modules(count, Sampler, first);
     vec![
-        ("volumes", passes::raycast::volumes_module(&[Sampler, Shader], volumes)),
+        ("volumes", voxels::module(&[plain, masked], volumes)),
+        voxels::texels_module(masked),
         passes::lighting::Kinds::all().module(),
         passes::raycast::classifications_module(&[Pre, PreIntegrated], classified),
         view::lights_module(4),

@@ -8,8 +8,6 @@ struct Classified {
     lookup_offset: f32,
     // The last entry of the table.
     last: f32,
-    // Texels beyond this touch a sample that is not finite.
-    sentinel: f32,
     // Voxels along each axis.
     size: vec3f,
     bricks: vec3u,
@@ -28,9 +26,12 @@ fn brick_distance(place: vec3f) -> f32 {
     return f32(textureLoad(brick_distances, vec2u(brick % BRICK_ROW, brick / BRICK_ROW), 0).r);
 }
 
-// Place in the table, in entries, of what is at a place of the volume; constant beyond its faces. Less than 0 where a sample is missing.
-fn entry_at(place: vec3f) -> f32 {
-    let texel = texel_at(0u, clamp(place, vec3f(0.0), vec3f(1.0)));
-    let at = clamp(texel * classified.lookup_scale + classified.lookup_offset, 0.0, 1.0) * classified.last;
-    return select(at, -1.0, texel > classified.sentinel);
+// What is at a place of the volume; constant beyond its faces.
+fn voxel_in(place: vec3f) -> Voxel {
+    return voxel_at(0u, clamp(place, vec3f(0.0), vec3f(1.0)));
+}
+
+// Its place in the table, in entries.
+fn entry_of(voxel: Voxel) -> f32 {
+    return clamp(voxel.texel * classified.lookup_scale + classified.lookup_offset, 0.0, 1.0) * classified.last;
 }

@@ -7,14 +7,22 @@
 const PRE = 1u;
 const PRE_INTEGRATED = 2u;
 
-// Texels of classified voxels beyond this touch a sample that is not finite; others are 1 at most.
-const MISSING = 2.0;
-
 // Colour and extinction from classified voxels; they are kept as shares of their greatest.
 fn pre_classified(index: u32, place: vec3f, greatest_colour: f32, greatest_extinction: f32) -> vec4f {
     let found = voxels_at(index, place);
     let colour = found.rgb * (greatest_colour / max(found.a, 1e-30));
-    return vec4f(colour, select(found.a * greatest_extinction, 0.0, found.a > MISSING));
+    return vec4f(colour, found.a * greatest_extinction);
+}
+
+// The values at both ends of a segment. What is missing has none: then the other's goes on.
+fn values_of(front: Voxel, back: Voxel) -> vec2f {
+    if ANY_PARTIAL {
+        return vec2f(
+            select(front.texel, back.texel, front.shown == 0.0),
+            select(back.texel, front.texel, back.shown == 0.0),
+        );
+    }
+    return vec2f(front.texel, back.texel);
 }
 
 // Places of two texels in the table, in entries.
@@ -30,10 +38,10 @@ fn layers_below(index: u32, lookup: Lookup, place: f32) -> f32 {
     return mix(pair_at(index, at).x, pair_at(index, at + vec2u(1u, 0u)).x, place - below);
 }
 
-// Mean colour and optical depth of a segment that is `share` of a whole one, from the texels at its ends. Colour times depth and depth are
+// Mean colour and optical depth of a segment that is `share` of a whole one, from what is at its ends. Colour times depth and depth are
 // interpolated between entries; on the diagonal, where they have an edge, within each triangle for itself.
-fn pre_integrated(index: u32, lookup: Lookup, front: f32, back: f32, share: f32) -> vec4f {
-    let places = places_of(lookup, vec2f(front, back));
+fn pre_integrated(index: u32, lookup: Lookup, front: Voxel, back: Voxel, share: f32) -> vec4f {
+    let places = places_of(lookup, values_of(front, back));
     let below = min(floor(places), vec2f(lookup.last - 1.0));
     let part = places - below;
     let at = vec2u(below);
@@ -50,12 +58,12 @@ fn pre_integrated(index: u32, lookup: Lookup, front: f32, back: f32, share: f32)
         let layers = abs(layers_below(index, lookup, places.y) - layers_below(index, lookup, places.x));
         depth = mix(min(layers, depth), depth, share);
     }
-    return vec4f(sum.rgb / max(sum.a, 1e-30), select(depth, 0.0, max(front, back) > lookup.sentinel));
+    return vec4f(sum.rgb / max(sum.a, 1e-30), depth * (0.5 * (front.shown + back.shown)));
 }
 
 // Where in a segment its surface is, as a share of its length: at the first layer that it crosses, else in the middle.
-fn surface_in(index: u32, lookup: Lookup, front: f32, back: f32) -> f32 {
-    let places = places_of(lookup, vec2f(front, back));
+fn surface_in(index: u32, lookup: Lookup, front: Voxel, back: Voxel) -> f32 {
+    let places = places_of(lookup, values_of(front, back));
     let rising = places.y > places.x;
     let entry = select(ceil(places.x) - 1.0, floor(places.x), rising);
     let known = pair_at(index, vec2u(u32(clamp(entry, 0.0, lookup.last - 1.0)), u32(lookup.last) + 1u));

@@ -41,7 +41,9 @@ pub use crate::sources::{Endian, SampleFormat};
 /// | `interpolation` | as above | – | – | `Auto` |
 ///
 /// A voxel is a cell around its sample, so the volume is `size * spacing` millimetres long. Between samples the field is trilinear;
-/// in the half voxel at the border it is constant. Samples that are not finite are counted, reported and drawn as transparent.
+/// in the half voxel at the border it is constant. Samples that are not finite are counted, reported and missing: what lies between samples is the
+/// mean of those that there are, by their weights, and the medium ends where half of the weights are missing, within half a voxel. That end is
+/// shaded as a surface.
 ///
 /// ```ron
 /// Volume: File("head.nii.gz")

@@ -8,12 +8,23 @@ use crate::sources::SampleFormat;
 pub struct VolumeFormat {
     /// Format of the texels.
     pub texture: wgpu::TextureFormat,
+    /// What is in each.
+    pub texels: Texels,
     /// Who interpolates between them.
     pub filtering: Filtering,
     /// Data value = texel x `scale` + `offset`.
     pub scale: f32,
     /// See `scale`.
     pub offset: f32,
+}
+
+/// What a texel of a volume is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Texels {
+    /// A value.
+    Values,
+    /// A value and 1, or 0 and 0 where there is none: interpolated, the one over the other is the mean of the values that there are.
+    Masked,
 }
 
 /// Who interpolates between texels.
@@ -47,15 +58,18 @@ impl VolumeFormat {
         ];
         let describe =
             |format: Self| format!("{:?}, filtered by the {}", format.texture, format.filtering.who());
-        kinds.into_iter().map(|kind| (format!("{kind:?}"), describe(Self::choose(gpu, kind)))).collect()
+        kinds
+            .into_iter()
+            .map(|kind| (format!("{kind:?}"), describe(Self::choose(gpu, kind, false))))
+            .collect()
     }
 
     /// The narrowest format that holds the samples exactly and filters them as exactly as the adapter can.
     ///
     /// Software adapters filter 8-bit normalised texels in 8-bit fixed point, which shows as banding; they filter half floats in
     /// full precision, and those hold 8-bit integers exactly. Signed integers are stored shifted, since a signed normalised format maps
-    /// its two lowest values to one.
-    pub fn choose(gpu: &Gpu, samples: SampleFormat) -> Self {
+    /// its two lowest values to one. `is_masked` says that some samples are missing: then each texel says of its own whether it is one.
+    pub fn choose(gpu: &Gpu, samples: SampleFormat, is_masked: bool) -> Self {
         use wgpu::TextureFormat as Format;
         let (low, steps) = match samples {
             SampleFormat::U8 | SampleFormat::Rgba8 => (0.0, 255.0),
@@ -64,8 +78,14 @@ impl VolumeFormat {
             SampleFormat::I16 => (-32768.0, 65535.0),
             SampleFormat::F32 => (0.0, 1.0),
         };
-        let exact = |texture| Self { texture, filtering: Filtering::Sampler, scale: 1.0, offset: 0.0 };
-        let normalised = |texture| Self { texture, filtering: Filtering::Sampler, scale: steps, offset: low };
+        let texels = Texels::Values;
+        let exact =
+            |texture| Self { texture, texels, filtering: Filtering::Sampler, scale: 1.0, offset: 0.0 };
+        let normalised = |texture| Self { scale: steps, offset: low, ..exact(texture) };
+        let floats = match is_masked {
+            true => Self { texels: Texels::Masked, ..exact(Format::Rg32Float) },
+            false => exact(Format::R32Float),
+        };
         match samples {
             SampleFormat::U8 | SampleFormat::I8 | SampleFormat::Rgba8 if gpu.is_software() => {
                 exact(Format::R16Float)
@@ -74,8 +94,8 @@ impl VolumeFormat {
             SampleFormat::U16 | SampleFormat::I16 if gpu.has(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM) => {
                 normalised(Format::R16Unorm)
             }
-            _ if gpu.has(wgpu::Features::FLOAT32_FILTERABLE) => exact(Format::R32Float),
-            _ => Self { filtering: Filtering::Shader, ..exact(Format::R32Float) },
+            _ if gpu.has(wgpu::Features::FLOAT32_FILTERABLE) => floats,
+            _ => Self { filtering: Filtering::Shader, ..floats },
         }
     }
 }

@@ -17,7 +17,7 @@ pub use buffer::{storage, storage_array, storage_of, uniform_array, uniform_buff
 pub use device::{Gpu, GpuOptions};
 pub use draw::{Draw, DrawDescriptor, binding};
 pub use error::GpuError;
-pub use formats::{Filtering, VolumeFormat};
+pub use formats::{Filtering, Texels, VolumeFormat};
 pub use grid::Grid;
 pub use kernel::{Invocations, Kernel, KernelDescriptor};
 pub use readback::{read_buffer, read_texture};

@@ -52,6 +52,7 @@ sources! {
     "surface" => "surface.wgsl",
     "sweep" => "shared/sweep.wgsl",
     "tonemap" => "tonemap.wgsl",
+    "voxel" => "shared/voxel.wgsl",
 }
 
 /// The folder whose files are used instead of the shaders built in, where there is one.

@@ -8,6 +8,7 @@ use super::light_budget::KeptLights;
 use super::light_volume::lighting_in_force;
 use super::light_volume::medium::{Medium, MediumKernels};
 use super::upload::VolumeTexture;
+use super::voxels::Reading;
 use crate::components::{SceneSettings, Shading, VolumeLighting};
 use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, Grid, Invocations, PassTimer, binding, uniform_buffer};
@@ -143,8 +144,8 @@ fn make(
         wgpu::BindingResource::TextureView(&texture.view),
     ]);
     let bindings = [binding::UNIFORM, binding::grid_out(wgpu::TextureFormat::Rgba32Float)];
-    let filtering = texture.format.filtering;
-    let kernel = averager.kernels.get(gpu, filtering, ("light_cells", "average"), &bindings, report)?;
+    let reading = Reading::of(texture.format);
+    let kernel = averager.kernels.get(gpu, reading, ("light_cells", "average"), &bindings, report)?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     kernel.run(gpu, &mut encoder, &resources, Invocations::Count(cells.element_product()), timing);
     gpu.queue.submit([encoder.finish()]);

@@ -12,6 +12,7 @@ pub mod through;
 use super::classify::Classified;
 use super::light_budget::KeptLights;
 use super::upload::VolumeTexture;
+use super::voxels::Reading;
 use crate::components::{DirectionalLight, Motion, Placement, SceneSettings, Shading, VolumeLighting};
 use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, Grid, Invocations, PassTimer, binding, uniform_buffer};
@@ -234,8 +235,8 @@ pub(crate) fn make(
         wgpu::BindingResource::TextureView(&texture.view),
     ]);
     let bindings = [binding::UNIFORM, binding::GRID_OUT, binding::UNIFORM];
-    let filtering = texture.format.filtering;
-    let kernel = sweeper.kernels.get(gpu, filtering, ("light_volume", "sweep"), &bindings, report)?;
+    let reading = Reading::of(texture.format);
+    let kernel = sweeper.kernels.get(gpu, reading, ("light_volume", "sweep"), &bindings, report)?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     kernel.run(gpu, &mut encoder, &resources, Invocations::Count(size.x * size.y), timing);
     gpu.queue.submit([encoder.finish()]);

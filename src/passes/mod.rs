@@ -28,6 +28,7 @@ pub mod surface_points;
 pub mod tonemap;
 pub mod upload;
 pub mod volume_shadow;
+pub(crate) mod voxels;
 
 use crate::{Stage, gpu::Gpu};
 use bevy_app::{App, Plugin, Update};

@@ -4,11 +4,13 @@
 //! extinction and extinction as shares of the greatest. Runs for a volume when its data or its function changes.
 
 use super::classify::Classified;
-use super::upload::{SENTINEL_THRESHOLD, VolumeTexture};
+use super::upload::VolumeTexture;
+use super::voxels::{self, Reading};
 use crate::components::Classification;
 use crate::failure::Failure;
 use crate::gpu::{
-    Gpu, GpuError, Invocations, Kernel, KernelDescriptor, PassTimer, binding, texture_of, uniform_buffer,
+    Gpu, GpuError, Invocations, Kernel, KernelDescriptor, PassTimer, Texels, binding, texture_of,
+    uniform_buffer,
 };
 use crate::loading::LoadedVolume;
 use crate::scene::{Problem, Problems};
@@ -16,9 +18,9 @@ use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
 use glam::{UVec2, Vec4};
 
-/// The kernel, from when it is first needed.
+/// The kernels, one for each kind of texels, from when it is first needed.
 #[derive(Resource, Default, Debug)]
-pub(crate) struct Preclassifier(Option<Kernel>);
+pub(crate) struct Preclassifier(Vec<(Texels, Kernel)>);
 
 /// The classified voxels of a volume.
 #[derive(Component, Debug)]
@@ -34,7 +36,6 @@ mirror! {
     pub(crate) struct VoxelsUniform as "Voxels" {
         lookup_scale: f32,
         lookup_offset: f32,
-        sentinel: f32,
         greatest_colour: f32,
         greatest_extinction: f32,
     }
@@ -45,7 +46,7 @@ pub(crate) fn preclassify(
     gpu: Res<Gpu>,
     volumes: Query<(Entity, Ref<Classified>, Ref<VolumeTexture>, &LoadedVolume, Has<ClassifiedVoxels>)>,
     orphans: Query<Entity, (With<ClassifiedVoxels>, Without<LoadedVolume>)>,
-    mut kernel: ResMut<Preclassifier>,
+    mut kernels: ResMut<Preclassifier>,
     mut timer: Option<ResMut<PassTimer>>,
     (mut report, mut failure, mut problems): (ResMut<Report>, ResMut<Failure>, ResMut<Problems>),
 ) {
@@ -81,7 +82,7 @@ pub(crate) fn preclassify(
         };
         let timing = timer.as_mut().and_then(|timer| timer.time_compute("preclassify"));
         let made = || {
-            let kernel = ready(&gpu, &mut kernel, &mut report)?;
+            let kernel = ready(&gpu, &mut kernels, Reading::of(texture.format), &mut report)?;
             Ok(classified_voxels(&gpu, kernel, &classified, &texture, loaded.data.size, timing))
         };
         match gpu.attempt("preclassify", made) {
@@ -97,18 +98,24 @@ pub(crate) fn preclassify(
     }
 }
 
-fn ready<'a>(gpu: &Gpu, kernel: &'a mut Preclassifier, report: &mut Report) -> Result<&'a Kernel, GpuError> {
-    let made = match kernel.0.take() {
-        Some(made) => made,
+fn ready<'a>(
+    gpu: &Gpu,
+    kernels: &'a mut Preclassifier,
+    reading: Reading,
+    report: &mut Report,
+) -> Result<&'a Kernel, GpuError> {
+    let index = match kernels.0.iter().position(|(made_for, _)| *made_for == reading.texels) {
+        Some(index) => index,
         None => {
+            kernels.0.push((reading.texels, make(gpu, reading)?));
             report.pipelines.push("preclassify");
-            make(gpu)?
+            kernels.0.len() - 1
         }
     };
-    Ok(kernel.0.insert(made))
+    Ok(&kernels.0[index].1)
 }
 
-fn make(gpu: &Gpu) -> Result<Kernel, GpuError> {
+fn make(gpu: &Gpu, reading: Reading) -> Result<Kernel, GpuError> {
     let bindings = [
         binding::UNIFORM,
         binding::texture(wgpu::TextureViewDimension::D3, false),
@@ -116,7 +123,11 @@ fn make(gpu: &Gpu) -> Result<Kernel, GpuError> {
         binding::VOXELS_OUT,
     ];
     let name = "preclassify";
-    Kernel::new(gpu, &KernelDescriptor { name, generated: &[], entry_point: name, bindings: &bindings })
+    let generated = [voxels::texels_module(reading)];
+    Kernel::new(
+        gpu,
+        &KernelDescriptor { name, generated: &generated, entry_point: name, bindings: &bindings },
+    )
 }
 
 fn classified_voxels(
@@ -135,7 +146,6 @@ fn classified_voxels(
     let uniform = VoxelsUniform {
         lookup_scale,
         lookup_offset,
-        sentinel: SENTINEL_THRESHOLD,
         greatest_colour: greatest[0],
         greatest_extinction: greatest[1],
     };

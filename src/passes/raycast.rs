@@ -19,6 +19,7 @@ use super::summed_light::SummedLight;
 use super::surface::Surface;
 use super::upload::{VolumeTexture, VolumeUploadPlugin};
 use super::volume_shadow::{self, VolumeShadow, VolumeShadows};
+use super::voxels::Reading;
 use crate::components::{
     Classification, Placement, RayCast as RayCastSettings, SceneSettings, Shading, VolumeLighting,
 };
@@ -38,7 +39,7 @@ use glam::UVec2;
 pub(super) use instance::Lit;
 pub(crate) use instance::VolumeInstance;
 use instance::{instances, lit};
-pub(crate) use pipeline::{Scattered, classifications_module, scattered_module, volumes_module};
+pub(crate) use pipeline::{Scattered, classifications_module, scattered_module};
 use pipeline::{Variant, make};
 pub(crate) use tables::BRICK_ROW;
 use tables::{Tables, tables, view_of};
@@ -205,12 +206,12 @@ fn prepare(
     caster: &mut RayCaster,
     report: &mut Report,
 ) -> Result<(), GpuError> {
-    let filtering = volumes.iter().map(|volume| volume.texture.format.filtering).collect();
+    let readings = volumes.iter().map(|volume| Reading::of(volume.texture.format)).collect();
     let light_volumes = shadows(volumes).iter().map(Option::is_some).collect();
     let scattered = volumes.iter().map(scattered_of).collect();
     let classifications = volumes.iter().map(classification_of).collect();
     let light_capacity = frame.light_capacity;
-    let variant = Variant { filtering, classifications, light_capacity, kinds, light_volumes, scattered };
+    let variant = Variant { readings, classifications, light_capacity, kinds, light_volumes, scattered };
     if caster.draw.as_ref().is_none_or(|(made_for, _)| *made_for != variant) {
         caster.draw = Some((variant.clone(), make(gpu, &variant)?));
         report.pipelines.push("raycast");

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, VolumeFormat};
 use crate::loading::{LoadedMesh, LoadedVolume};
 use crate::scene::{EntityProblems, Problem};
-use crate::sources::volume::luminance;
+use crate::sources::volume::{is_present, luminance};
 use crate::sources::{MeshData, Samples};
 use crate::{Stage, report::Report};
 use bevy_app::{App, Plugin, Update};
@@ -87,12 +87,6 @@ pub(crate) struct VolumeTexture {
     pub format: VolumeFormat,
     bytes: u64,
 }
-
-/// The texel that stands for a sample that is not finite. Any mix with it lies far beyond what data may hold, and stays finite.
-pub(crate) const SENTINEL: f32 = 3.0e38;
-
-/// Texels greater than this have a share of [`SENTINEL`] in them.
-pub(crate) const SENTINEL_THRESHOLD: f32 = 2.0e30;
 
 fn upload_meshes(
     mut commands: Commands,
@@ -176,7 +170,9 @@ fn upload_volumes(
         if !fits {
             continue;
         }
-        match gpu.attempt("uploading a volume", || Ok(texture(&gpu, size, &samples))) {
+        match gpu
+            .attempt("uploading a volume", || Ok(texture(&gpu, size, &samples, volume.data.non_finite > 0)))
+        {
             Ok(texture) => {
                 added += texture.bytes;
                 report.ran("upload_volumes", &[("voxels", samples.len() as u64)]);
@@ -203,8 +199,8 @@ fn volume_too_large([x, y, z]: [u32; 3], limit: u32) -> Option<Problem> {
     Some(Problem::error(message).help("downsample the volume, or cut out the part that matters"))
 }
 
-fn texture(gpu: &Gpu, size: [u32; 3], samples: &Samples) -> VolumeTexture {
-    let format = VolumeFormat::choose(gpu, samples.format());
+fn texture(gpu: &Gpu, size: [u32; 3], samples: &Samples, is_masked: bool) -> VolumeTexture {
+    let format = VolumeFormat::choose(gpu, samples.format(), is_masked);
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("volume"),
         size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: size[2] },
@@ -260,11 +256,10 @@ fn convert(samples: &Samples, range: std::ops::Range<usize>, format: VolumeForma
         (Samples::I8(s), Format::R16Float) => bytes(s[range].iter().map(|s| f16::from_f32(f32::from(*s)))),
         (Samples::U16(s), Format::R16Unorm) => bytes(s[range].iter().copied()),
         (Samples::I16(s), Format::R16Unorm) => bytes(s[range].iter().map(|s| (i32::from(*s) + 32768) as u16)),
-        (Samples::F32(s), _) => bytes(
-            s[range]
-                .iter()
-                .map(|s| if s.abs() <= crate::sources::volume::MAX_SAMPLE_MAGNITUDE { *s } else { SENTINEL }),
-        ),
-        (other, _) => bytes(range.map(|index| other.get(index).unwrap_or(SENTINEL))),
+        (Samples::F32(s), Format::Rg32Float) => {
+            bytes(s[range].iter().map(|s| if is_present(*s) { [*s, 1.0] } else { [0.0, 0.0] }))
+        }
+        (Samples::F32(s), _) => bytes(s[range].iter().copied()),
+        (other, _) => bytes(range.map(|index| other.get(index).unwrap_or_default())),
     }
 }

@@ -23,8 +23,13 @@ use super::LayoutError;
 /// The most bytes of samples a volume may have: 8 GiB.
 pub const MAX_VOLUME_BYTES: u64 = 8 << 30;
 
-/// Floating-point samples beyond this in magnitude count as non-finite: on the GPU they are what marks a missing sample.
+/// Floating-point samples beyond this in magnitude count as non-finite, so that sums of a few of the others stay finite.
 pub const MAX_SAMPLE_MAGNITUDE: f32 = 1e30;
+
+/// Whether a floating-point sample is there, and not one that counts as missing.
+pub(crate) fn is_present(sample: f32) -> bool {
+    sample.abs() <= MAX_SAMPLE_MAGNITUDE
+}
 
 /// How one sample is stored.
 #[derive(Reflect, Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

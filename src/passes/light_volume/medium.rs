@@ -1,11 +1,12 @@
 //! The medium of a volume as kernels that sweep it read it: see `shaders/shared/classified.wgsl`.
 
-use crate::gpu::{Filtering, Gpu, GpuError, Kernel, KernelDescriptor, binding, texture_of, uniform_buffer};
+use crate::gpu::{Gpu, GpuError, Kernel, KernelDescriptor, binding, texture_of, uniform_buffer};
 use crate::loading::LoadedVolume;
 use crate::mirrors::mirror;
 use crate::passes::classify::Classified;
-use crate::passes::raycast::{BRICK_ROW, volumes_module};
-use crate::passes::upload::{SENTINEL_THRESHOLD, VolumeTexture};
+use crate::passes::raycast::BRICK_ROW;
+use crate::passes::upload::VolumeTexture;
+use crate::passes::voxels::{self, Reading};
 use crate::report::Report;
 use glam::{UVec2, UVec3, Vec3};
 
@@ -16,36 +17,33 @@ mirror! {
         lookup_scale: f32,
         lookup_offset: f32,
         last: f32,
-        sentinel: f32,
         size: Vec3,
         bricks: UVec3,
     }
 }
 
-/// Kernels that read a medium: one for each way in which volumes are interpolated, made when it is first asked for.
+/// Kernels that read a medium: one for each way in which volumes are read, made when it is first asked for.
 #[derive(Default, Debug)]
-pub(crate) struct MediumKernels(Vec<(Filtering, Kernel)>);
+pub(crate) struct MediumKernels(Vec<(Reading, Kernel)>);
 
 impl MediumKernels {
     /// The kernel `entry_point` of the shader `name`. Its own bindings stand behind those of the medium, and the volume behind them.
     pub fn get(
         &mut self,
         gpu: &Gpu,
-        filtering: Filtering,
+        reading: Reading,
         (name, entry_point): (&'static str, &str),
         own: &[wgpu::BindingType],
         report: &mut Report,
     ) -> Result<&Kernel, GpuError> {
-        let index = match self.0.iter().position(|(made_for, _)| *made_for == filtering) {
+        let index = match self.0.iter().position(|(made_for, _)| *made_for == reading) {
             Some(index) => index,
             None => {
-                let volume =
-                    binding::texture(wgpu::TextureViewDimension::D3, filtering == Filtering::Sampler);
-                let bindings = [&Medium::BINDINGS, own, &[volume]].concat();
-                let generated = [("volumes", volumes_module(&[filtering], bindings.len() - 1))];
+                let bindings = [&Medium::BINDINGS, own, &[reading.binding()]].concat();
+                let generated = [("volumes", voxels::module(&[reading], bindings.len() - 1))];
                 let descriptor =
                     KernelDescriptor { name, generated: &generated, entry_point, bindings: &bindings };
-                self.0.push((filtering, Kernel::new(gpu, &descriptor)?));
+                self.0.push((reading, Kernel::new(gpu, &descriptor)?));
                 report.pipelines.push(name);
                 self.0.len() - 1
             }
@@ -81,7 +79,6 @@ impl Medium {
             lookup_scale,
             lookup_offset,
             last: (entries.len() - 1) as f32,
-            sentinel: SENTINEL_THRESHOLD,
             size: UVec3::from(loaded.data.size).as_vec3(),
             bricks: UVec3::from(classified.bricks),
         };

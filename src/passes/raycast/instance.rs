@@ -2,11 +2,11 @@
 
 use super::{VolumeData, classification_of};
 use crate::components::{Classification, SceneSettings, Shading, VolumeLighting};
+use crate::gpu::Texels;
 use crate::mirrors::mirror;
 use crate::optics::peak::Peak;
 use crate::passes::light_volume::{lighting_in_force, scene_from_texture};
 use crate::passes::lighting::{EMITS, GRADIENT, SCATTERS, SCATTERS_ONCE, SCATTERS_TOWARDS_EYE, UNLIT};
-use crate::passes::upload::SENTINEL_THRESHOLD;
 use crate::view::{Coarseness, View};
 use glam::{DAffine3, DVec3, Mat4, UVec3, Vec3};
 
@@ -29,7 +29,7 @@ mirror! {
         diffuse: f32,
         specular: f32,
         shininess: f32,
-        sentinel: f32,
+        edge: f32,
         reach: f32,
         g: f32,
         emission: f32,
@@ -101,7 +101,7 @@ fn instance(
         diffuse: lit.diffuse,
         specular: lit.specular,
         shininess: lit.shininess,
-        sentinel: SENTINEL_THRESHOLD,
+        edge: edge(volume),
         reach: view.reach as f32,
         g: lit.g,
         emission: lit.emission,
@@ -111,6 +111,17 @@ fn instance(
         greatest_colour,
         greatest_extinction,
     }
+}
+
+/// How far below 0 a missing sample counts as where gradients are taken, in texels: one range of the data below the least of it, so that
+/// the edge of what is there always stands out. 0 where none is missing.
+fn edge(VolumeData { loaded, classified, texture, .. }: &VolumeData) -> f32 {
+    if texture.format.texels == Texels::Values {
+        return 0.0;
+    }
+    let ((least, greatest), domain) = (loaded.data.range, classified.domain);
+    let width = (greatest - least).max(domain.1 - domain.0);
+    ((width - least) - texture.format.offset) / texture.format.scale
 }
 
 /// How a volume is lit where the picture is shaded so.

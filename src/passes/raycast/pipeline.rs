@@ -1,13 +1,12 @@
 //! The ray caster's pipeline, and the modules of its shader that are made for what is in a scene.
 
 use super::FORMAT;
-use super::tables::BRICK_ROW;
 use crate::components::Classification;
-use crate::gpu::{Draw, DrawDescriptor, Filtering, Gpu, GpuError, binding};
+use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, binding};
 use crate::passes::light_volume::lookup;
 use crate::passes::lighting::Kinds;
+use crate::passes::voxels::{self, Reading};
 use crate::passes::{classification, volume_shadow};
-use crate::sources::BrickRanges;
 use crate::view::lights_module;
 use std::fmt::Write;
 
@@ -15,7 +14,7 @@ use std::fmt::Write;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variant {
     /// One for each volume.
-    pub filtering: Vec<Filtering>,
+    pub readings: Vec<Reading>,
     /// One for each volume.
     pub classifications: Vec<Classification>,
     pub light_capacity: usize,
@@ -41,15 +40,12 @@ pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
         binding::TEXTURE,
         binding::SAMPLER,
     ];
-    let textures = variant
-        .filtering
-        .iter()
-        .map(|filtering| binding::texture(wgpu::TextureViewDimension::D3, *filtering == Filtering::Sampler));
+    let textures = variant.readings.iter().map(|reading| reading.binding());
     let light_volumes = lookup::bindings(variant.light_volumes.len(), lookup::filtering(gpu));
     let shadows = volume_shadow::bindings(&variant.light_volumes);
     let scattered: usize = variant.scattered.iter().map(|scattered| scattered.textures()).sum();
     let scattered = std::iter::repeat_n(binding::texture(wgpu::TextureViewDimension::D3, true), scattered);
-    let first = FIXED_BINDINGS + variant.filtering.len();
+    let first = FIXED_BINDINGS + variant.readings.len();
     let first_shadow = first + light_volumes.len();
     let first_classified = first_shadow + shadows.len();
     let classified = classification::bindings(&variant.classifications);
@@ -67,7 +63,7 @@ pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
         &DrawDescriptor {
             name: "raycast",
             generated: &[
-                ("volumes", volumes_module(&variant.filtering, FIXED_BINDINGS)),
+                ("volumes", voxels::module(&variant.readings, FIXED_BINDINGS)),
                 variant.kinds.module(),
                 classifications_module(&variant.classifications, first_classified),
                 lights_module(variant.light_capacity),
@@ -90,34 +86,6 @@ pub(crate) fn classifications_module(
     first_binding: usize,
 ) -> (&'static str, String) {
     ("classifications", classification::module(classifications, first_binding))
-}
-
-/// The WGSL module `volumes`: one texture binding a volume, and `texel_at(volume, place)` that interpolates in it.
-pub(crate) fn volumes_module(filtering: &[Filtering], first_binding: usize) -> String {
-    let brick = BrickRanges::BRICK;
-    let count = filtering.len();
-    let mut text =
-        format!("const VOLUMES = {count}u;\nconst BRICK_ROW = {BRICK_ROW}u;\nconst BRICK = {brick}.0;\n");
-    let mut cases = String::new();
-    for (index, filtering) in filtering.iter().enumerate() {
-        let binding = first_binding + index;
-        let value = match filtering {
-            Filtering::Sampler => format!("textureSampleLevel(volume_{index}, linear_sampler, place, 0.0).r"),
-            Filtering::Shader => {
-                text.push_str(&eight_loads(index));
-                format!("trilinear_{index}(place)")
-            }
-        };
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "@group(0) @binding({binding}) var volume_{index}: texture_3d<f32>;");
-        let label = if index == 0 { "default".into() } else { format!("case {index}u") };
-        let _ = writeln!(cases, "        {label}: {{ return {value}; }}");
-    }
-    let _ = write!(
-        text,
-        "fn texel_at(volume: u32, place: vec3f) -> f32 {{\n    switch volume {{\n{cases}    }}\n}}\n"
-    );
-    text
 }
 
 /// What is looked up of light that was scattered before.
@@ -164,26 +132,4 @@ pub(crate) fn scattered_module(scattered: &[Scattered], first: usize) -> (&'stat
         );
     }
     ("scattered", text)
-}
-
-/// Trilinear interpolation with eight loads, clamped at the border.
-fn eight_loads(index: usize) -> String {
-    format!(
-        "fn trilinear_{index}(place: vec3f) -> f32 {{
-    let last = vec3i(textureDimensions(volume_{index})) - 1;
-    let at = place * vec3f(textureDimensions(volume_{index})) - 0.5;
-    let low = vec3i(floor(at));
-    let part = at - floor(at);
-    var rows: array<f32, 4>;
-    for (var row = 0; row < 4; row += 1) {{
-        let y = low.y + (row & 1);
-        let z = low.z + (row >> 1u);
-        let a = textureLoad(volume_{index}, clamp(vec3i(low.x, y, z), vec3i(0), last), 0).r;
-        let b = textureLoad(volume_{index}, clamp(vec3i(low.x + 1, y, z), vec3i(0), last), 0).r;
-        rows[row] = mix(a, b, part.x);
-    }}
-    return mix(mix(rows[0], rows[1], part.y), mix(rows[2], rows[3], part.y), part.z);
-}}
-"
-    )
 }

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::{MAX_SAMPLE_MAGNITUDE, Samples, luminance};
+use super::{Samples, luminance};
 
 /// The range of the finite samples in each brick of a volume.
 ///
@@ -80,7 +80,7 @@ impl Sample for f32 {
     const LEAST: Self = Self::NEG_INFINITY;
     const CAN_BE_MISSING: bool = true;
     fn is_present(self) -> bool {
-        self.abs() <= MAX_SAMPLE_MAGNITUDE
+        super::is_present(self)
     }
 }
 
