@@ -4,6 +4,7 @@
 //! into target/gallery/NAME.png. The scans are not part of the project: see `scans`.
 
 mod compose;
+mod first_sight;
 mod scans;
 mod scene;
 mod sheets;
@@ -14,7 +15,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 
 use crate::environment::Environment;
-use crate::process::cargo;
+use crate::process::{Program, cargo};
 use crate::setup;
 use sheets::{SHEETS, Sheet};
 
@@ -32,6 +33,9 @@ pub struct Arguments {
     /// Sets of samples to average in each cell, else as many as the sheet is made for
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536))]
     passes: Option<u32>,
+    /// Instead of the sheets, every file of the folder TYNDALL_DATA opened without a scene, beside F3D's defaults
+    #[arg(long, conflicts_with_all = ["only", "passes"])]
+    first_sight: bool,
 }
 
 fn names() -> clap::builder::PossibleValuesParser {
@@ -48,6 +52,10 @@ fn size(text: &str) -> Result<(u32, u32), String> {
 /// Draws the sheets whose scans are there. Fails if none is, or one that was asked for.
 pub fn run(arguments: &Arguments) -> Result<()> {
     let environment = setup::environment()?;
+    if arguments.first_sight {
+        fs::create_dir_all(FOLDER).with_context(|| format!("cannot create {FOLDER}"))?;
+        return first_sight::run(arguments.size, &environment);
+    }
     fs::create_dir_all(Path::new(FOLDER).join("scenes"))
         .with_context(|| format!("cannot create {FOLDER}"))?;
     let wanted =
@@ -92,7 +100,6 @@ fn draw(sheet: &Sheet, scan: &Path, arguments: &Arguments, environment: &Environ
     Ok(path)
 }
 
-/// With the optimised program where there is one; brought up to date first, for a stale one would show what no longer is.
 fn render(
     scene: &str,
     picture: &str,
@@ -100,24 +107,17 @@ fn render(
     passes: u32,
     environment: &Environment,
 ) -> Result<()> {
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
-    let program = format!("tyndall{}", std::env::consts::EXE_SUFFIX);
-    let profile = if target.join("release").join(program).is_file() { "release" } else { "dev" };
-    cargo()
-        .arguments([
-            "run",
-            "--quiet",
-            "--profile",
-            profile,
-            "-p",
-            "tyndall-cli",
-            "--bin",
-            "tyndall",
-            "--",
-            "render",
-        ])
-        .arguments([scene, "-o", picture, "--size", &format!("{across}x{down}")])
+    program()
+        .arguments(["render", scene, "-o", picture, "--size", &format!("{across}x{down}")])
         .arguments(["--passes", &passes.to_string()])
         .inside(environment)
         .run()
+}
+
+/// The optimised program where there is one; brought up to date first, for a stale one would show what no longer is.
+fn program() -> Program {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
+    let program = format!("tyndall{}", std::env::consts::EXE_SUFFIX);
+    let profile = if target.join("release").join(program).is_file() { "release" } else { "dev" };
+    cargo().arguments(["run", "--quiet", "--profile", profile, "-p", "tyndall-cli", "--bin", "tyndall", "--"])
 }
