@@ -137,6 +137,7 @@ fn every_field_of_every_component_can_be_written() {
         eye: Vec3::new(1.0, 2.0, 3.0),
         target: Vec3::new(0.5, 0.0, -0.1),
         up: Vec3::Z,
+        frame: None,
         projection: Projection::Orthographic { height: 3.0 },
         exposure: -1.5,
         gamma: 1.0,

@@ -145,6 +145,7 @@ mod tests {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let iso = vec![IsoValue { value: -12.5, width: 0.0, ..Default::default() }];
         let whole = TransferFunction {
+            preset: None,
             domain: Auto::Value(Vec2::new(-1e6, 1e-3)),
             points,
             iso,
