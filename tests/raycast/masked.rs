@@ -3,6 +3,7 @@
 use super::camera;
 use super::support::{Studio, difference};
 use tyndall::gpu::GpuOptions;
+use tyndall_needs::needs;
 
 /// Samples of a slice, some of which are missing.
 fn sample([x, y, _]: [usize; 3]) -> f32 {
@@ -50,8 +51,8 @@ fn radiance(opacity: f64, shown: f64) -> f64 {
     1.0 - (shown * (1.0 - opacity).ln()).exp()
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn what_lies_between_samples_is_the_mean_of_those_that_there_are() {
     for portable in [false, true] {
         let mut studio = Studio::with(&GpuOptions { portable });
@@ -73,8 +74,8 @@ fn what_lies_between_samples_is_the_mean_of_those_that_there_are() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn classified_voxels_end_as_gradually_as_they_are_interpolated() {
     let mut studio = Studio::new();
     let scene = slice(&studio, "Pre");
@@ -118,8 +119,8 @@ fn ball(studio: &Studio, lighting: &str, outside: f32) -> String {
     )
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn the_end_of_what_there_is_is_shaded_as_a_surface() {
     let mut studio = Studio::new();
     let scene = ball(&studio, "Gradient(ambient: 0.0, diffuse: 1.0, specular: 0.0)", f32::NAN);
@@ -144,8 +145,8 @@ fn the_end_of_what_there_is_is_shaded_as_a_surface() {
     assert!(count > 1000.0 && error < 0.1, "{error}");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn light_passes_what_is_missing_as_if_nothing_were_there() {
     let mut studio = Studio::new();
     let lightings = [
@@ -173,8 +174,8 @@ fn light_passes_what_is_missing_as_if_nothing_were_there() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn volumes_of_nothing_and_of_one_voxel_are_drawn() {
     let mut studio = Studio::new();
     for classification in ["Post", "Pre", "PreIntegrated"] {
@@ -212,8 +213,8 @@ fn volumes_of_nothing_and_of_one_voxel_are_drawn() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn bricks_beside_what_is_missing_are_skipped_without_a_trace() {
     let mut studio = Studio::new();
     let mut pictures = Vec::new();
