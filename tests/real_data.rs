@@ -276,7 +276,15 @@ const FORMATS: &[(&str, Outcome)] = &[
     ),
     (
         "formats/nrrdjl/test_helix.nrrd",
-        Refused("7 numbers at each place (axis 1, 3D-masked-symmetric-matrix); choose one: `unu slice"),
+        Volume(
+            [11, 12, 13],
+            [0.436364, 0.4, 0.369231],
+            "F32",
+            (1.0, 1.0),
+            &[
+                "each voxel has 7 numbers (axis 1, 3D-masked-symmetric-matrix); number 0, counted from 0, is read",
+            ],
+        ),
     ),
     (
         "formats/pynrrd/BallBinary30x30x30.nhdr",

@@ -96,6 +96,18 @@ pub enum SourceError {
         /// What to do about it.
         mend: String,
     },
+    /// An entry or a component that a file does not have.
+    #[error("{path}: {what} is {asked}, but {}", mend_no_such_part(.what, *.count))]
+    NoSuchPart {
+        /// The path asked for.
+        path: PathBuf,
+        /// The field that asks for it: `index` or `component`.
+        what: &'static str,
+        /// Which one is asked for, counted from 0.
+        asked: u64,
+        /// How many there are.
+        count: u64,
+    },
     /// A mesh file without a surface.
     #[error("{path}: no triangles: found {found}; export the mesh with its faces")]
     NoTriangles {
@@ -198,5 +210,16 @@ fn mend_not_found(near: Option<&str>) -> String {
     match near {
         Some(name) => format!("; did you mean `{name}`?"),
         None => "; check the path and the folder it is relative to".to_owned(),
+    }
+}
+
+fn mend_no_such_part(what: &str, count: u64) -> String {
+    let last = count.saturating_sub(1);
+    match (what, count) {
+        (_, 0) => "the file holds none".to_owned(),
+        ("component", 1) => "each voxel has a single number, 0".to_owned(),
+        ("component", _) => format!("the {count} numbers of a voxel are 0 to {last}"),
+        (_, 1) => "it holds a single volume, 0".to_owned(),
+        _ => format!("its {count} volumes are 0 to {last}"),
     }
 }

@@ -3,6 +3,8 @@
 //! Nothing here knows a scene, an entity or a GPU: a path goes in, plain vectors or a [`SourceError`] come out. Whatever the
 //! file holds, a reader neither panics nor allocates more than a bounded multiple of the file's length.
 
+mod beside;
+mod colour;
 mod dicom;
 pub mod error;
 mod file;
@@ -12,11 +14,13 @@ mod meta_image;
 mod nifti;
 mod nrrd;
 pub mod obj;
+mod pick;
 mod pieces;
 pub mod procedural;
 pub mod raw;
 pub mod recognise;
 pub mod self_describing;
+mod shape;
 mod stored;
 mod stream;
 mod text;

@@ -11,37 +11,45 @@ use super::{
 /// The most files that one volume may lie in.
 pub(super) const MAX_FILES: usize = 1 << 16;
 
-/// Reads `whole` from files of equally many samples. `place` says where in its file each piece begins.
+/// Reads `whole` from files of equally many of the `all` samples that are there. `place` says where in its file each piece
+/// begins.
 pub(super) fn read(
     whole: &SampleStream,
+    all: u64,
     files: &[PathBuf],
     notes: &mut Vec<String>,
     place: impl Fn(&mut SampleStream) -> Result<(), SourceError>,
 ) -> Result<Stored, SourceError> {
     let count = files.len() as u64;
-    if count == 0 || !whole.samples.is_multiple_of(count) {
+    if count == 0 || !all.is_multiple_of(count) {
         return Err(SourceError::Unsupported {
             path: whole.path.to_owned(),
             found: format!("{} do not divide by {count} data files", whole.what),
             mend: "correct the list of files or the size".to_owned(),
         });
     }
-    let mut all = whole.format.none();
-    for path in files {
-        let mut piece = SampleStream { path, samples: whole.samples / count, ..whole.clone() };
+    let in_each = all / count;
+    let mut joined = whole.format.none();
+    for (index, path) in files.iter().enumerate() {
+        let mut piece = SampleStream { path, ..whole.clone() };
         if count > 1 {
+            piece.pick = whole.pick.part(index as u64 * in_each);
+            piece.samples = piece.pick.count(in_each);
             piece.what = format!("one of {count} equal parts of {}", whole.what);
+        }
+        if piece.samples == 0 {
+            continue;
         }
         place(&mut piece)?;
         let (file, file_bytes) = file::open(path)?;
         if count == 1 {
             return piece.read(file, file_bytes, notes);
         }
-        piece.surplus = Surplus::Refuse;
+        piece.surplus = if piece.pick.is_all() { Surplus::Refuse } else { Surplus::Ignore };
         let samples = piece.read(file, file_bytes, notes)?;
-        append(&mut all, samples).ok_or_else(|| whole.out_of_memory())?;
+        append(&mut joined, samples).ok_or_else(|| whole.out_of_memory())?;
     }
-    Ok(all)
+    Ok(joined)
 }
 
 /// Adds samples of the same type; `None` if there is no memory for them.

@@ -6,13 +6,17 @@ use glam::Vec3;
 
 use super::{
     LayoutError, SourceError, file,
+    pick::Pick,
     stored::{Scaling, Stored, StoredFormat},
     stream::{Packing, SampleStream, Surplus},
-    volume::{Endian, MAX_VOLUME_BYTES, SampleFormat, Samples, VolumeData, check_spacing, checked_bytes},
+    volume::{Endian, SampleFormat, Samples, VolumeData, check_spacing, checked_bytes},
 };
 
 /// What every gzip file begins with.
 pub(super) const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
+
+/// The most bytes in front of the first sample: more than any file system holds.
+const MAX_SKIP_BYTES: u64 = 1 << 60;
 
 /// What the bytes of a RAW file are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +29,7 @@ pub struct RawLayout {
     pub endian: Endian,
     /// Distance of voxel centres along x, y, z, in mm; finite, greater than 0.
     pub spacing: Vec3,
-    /// Bytes in front of the first sample, in the unpacked file.
+    /// Bytes in front of the first sample, in the unpacked file. Those of a plain file are never read, however many they are.
     pub skip_bytes: u64,
 }
 
@@ -34,12 +38,12 @@ impl RawLayout {
     ///
     /// # Errors
     ///
-    /// If no file can have this layout: an empty side, a spacing that is not finite and positive, or more than
-    /// [`MAX_VOLUME_BYTES`] of samples or of skipped bytes.
+    /// If no file can have this layout: an empty side, a spacing that is not finite and positive, more than
+    /// [`MAX_VOLUME_BYTES`](super::volume::MAX_VOLUME_BYTES) of samples, or more skipped bytes than a file can have.
     pub fn bytes(&self) -> Result<u64, LayoutError> {
         check_spacing(self.spacing)?;
-        if self.skip_bytes > MAX_VOLUME_BYTES {
-            return Err(LayoutError::Skip { skip_bytes: self.skip_bytes, limit: MAX_VOLUME_BYTES });
+        if self.skip_bytes > MAX_SKIP_BYTES {
+            return Err(LayoutError::Skip { skip_bytes: self.skip_bytes, limit: MAX_SKIP_BYTES });
         }
         checked_bytes(self.size, self.format.bytes())
     }
@@ -68,6 +72,7 @@ pub fn read_raw(path: &Path, layout: &RawLayout) -> Result<VolumeData, SourceErr
         path,
         what: format!("{x} x {y} x {z} {format} voxels"),
         samples: bytes / format.bytes() * numbers,
+        pick: Pick::ALL,
         format: stored_format,
         endian,
         packing: if begins_like_gzip && named_gzip { Packing::Gzip } else { Packing::Plain },

@@ -29,7 +29,10 @@ use std::{fs, io::Read, path::Path};
 
 use flate2::read::MultiGzDecoder;
 
-use super::{SourceError, VolumeData, dicom, file, meta_image, nifti, nrrd, raw::GZIP_MAGIC, trail, vtk};
+use super::{
+    SourceError, VolumeData, dicom, file, meta_image, nifti, nrrd, raw::GZIP_MAGIC, text::without_mark,
+    trail, vtk,
+};
 
 /// Bytes that are looked at to tell formats apart.
 const HEAD: u64 = 1024;
@@ -71,13 +74,14 @@ pub fn read_volume(path: &Path, selection: &Selection) -> Result<VolumeData, Sou
     if nifti::is_nifti(&head) {
         return nifti::read(path, selection);
     }
-    let known = if head.starts_with(b"NRRD00") {
+    let text = without_mark(&head);
+    let known = if text.starts_with(b"NRRD00") {
         nrrd::read
-    } else if head.starts_with(vtk::MAGIC) {
+    } else if text.starts_with(vtk::MAGIC) {
         vtk::read
     } else if dicom::is_dicom(&head, ending == "dcm") {
         dicom::read_file
-    } else if is_meta_image(&head) {
+    } else if is_meta_image(text) {
         meta_image::read
     } else {
         return Err(unknown(path, &head, &ending));

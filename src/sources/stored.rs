@@ -50,6 +50,8 @@ pub(super) trait Element: Pod + FromStr {
     fn swapped(self) -> Self;
     /// Its value, to 53 bits.
     fn value(self) -> f64;
+    /// The sample nearest to a value; `None` if it has fractions, or is beyond the type, and the type has none.
+    fn of_value(value: f64) -> Option<Self>;
     /// Whether a 32-bit float holds it; an infinity holds what is beyond all floats.
     fn fits_f32(self) -> bool;
 }
@@ -80,6 +82,10 @@ macro_rules! stored {
             const WHOLE: bool = $whole;
             fn swapped(self) -> Self { $swapped(self) }
             fn value(self) -> f64 { self as f64 }
+            fn of_value(value: f64) -> Option<Self> {
+                let near = value as $element;
+                (!$whole || near as f64 == value).then_some(near)
+            }
             fn fits_f32(self) -> bool { $fits(self) }
         })*
 

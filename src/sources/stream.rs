@@ -6,10 +6,12 @@ use std::{
     path::Path,
 };
 
+use bzip2::bufread::MultiBzDecoder;
 use flate2::bufread::{MultiGzDecoder, ZlibDecoder};
 
 use super::{
     SourceError, file,
+    pick::{Pick, PickReader},
     stored::{Element, Stored, StoredFormat, with_samples},
     text,
     volume::Endian,
@@ -30,6 +32,8 @@ pub(super) enum Packing {
     Gzip,
     /// A zlib stream.
     Zlib,
+    /// One bzip2 stream or several.
+    Bzip2,
     /// As they stand in memory, out of a stream of unknown length.
     Unpacked,
     /// Two hexadecimal digits a byte.
@@ -45,6 +49,7 @@ impl Packing {
             Self::Unpacked => "data",
             Self::Gzip => "gzip stream",
             Self::Zlib => "zlib stream",
+            Self::Bzip2 => "bzip2 stream",
             Self::Hex => "hexadecimal text",
             Self::Text => "text",
         }
@@ -69,8 +74,10 @@ pub(super) struct SampleStream<'a> {
     pub path: &'a Path,
     /// What the samples make: `64 x 64 x 64 U8 voxels`.
     pub what: String,
-    /// How many samples there are.
+    /// How many samples are read.
     pub samples: u64,
+    /// Which of those that are there.
+    pub pick: Pick,
     /// How one is stored.
     pub format: StoredFormat,
     /// The order of its bytes.
@@ -108,35 +115,62 @@ impl SampleStream<'_> {
         {
             return Err(self.length_error(rest, false, self.hint));
         }
-        file.seek(SeekFrom::Start(self.offset)).map_err(|cause| self.read_error(cause, 0))?;
-        self.read_from(BufReader::new(file), notes)
+        // What a plain file has in front of the samples that are read is never touched, however long it is.
+        let passed = if self.packing == Packing::Plain { self.passed() } else { 0 };
+        let start = self.offset.saturating_add(passed);
+        file.seek(SeekFrom::Start(start)).map_err(|cause| self.read_error(cause, 0))?;
+        let reader = BufReader::new(file);
+        if self.packing == Packing::Plain {
+            self.read_samples(reader, passed, notes)
+        } else {
+            self.read_from(reader, notes)
+        }
     }
 
     /// Reads the samples of a stream that begins with them.
     pub fn read_from(&self, reader: impl BufRead, notes: &mut Vec<String>) -> Result<Stored, SourceError> {
         match self.packing {
-            Packing::Plain | Packing::Unpacked => self.read_samples(reader, notes),
-            Packing::Gzip => self.read_samples(MultiGzDecoder::new(reader), notes),
-            Packing::Zlib => self.read_samples(ZlibDecoder::new(reader), notes),
-            Packing::Hex => self.read_samples(text::HexReader::new(reader), notes),
+            Packing::Plain | Packing::Unpacked => self.read_samples(reader, 0, notes),
+            Packing::Gzip => self.read_samples(BufReader::new(MultiGzDecoder::new(reader)), 0, notes),
+            Packing::Zlib => self.read_samples(BufReader::new(ZlibDecoder::new(reader)), 0, notes),
+            Packing::Bzip2 => self.read_samples(BufReader::new(MultiBzDecoder::new(reader)), 0, notes),
+            Packing::Hex => self.read_samples(BufReader::new(text::HexReader::new(reader)), 0, notes),
             Packing::Text => text::read_samples(self, reader),
         }
     }
 
-    /// Bytes to be read, with what is skipped.
+    /// Bytes up to the end of the last sample that is read, with what is skipped.
     fn needed(&self) -> u64 {
-        self.skip.saturating_add(self.samples.saturating_mul(self.format.bytes()))
+        self.skip.saturating_add(self.pick.end(self.samples).saturating_mul(self.format.bytes()))
     }
 
-    fn read_samples(&self, mut reader: impl Read, notes: &mut Vec<String>) -> Result<Stored, SourceError> {
-        let skipped = io::copy(&mut (&mut reader).take(self.skip), &mut io::sink());
+    /// Bytes in front of the first sample that is read.
+    fn passed(&self) -> u64 {
+        self.skip.saturating_add(self.pick.run(0).0.saturating_mul(self.format.bytes()))
+    }
+
+    /// Reads the samples of a stream of unpacked bytes of which `passed` have been passed over.
+    fn read_samples(
+        &self,
+        mut reader: impl BufRead,
+        passed: u64,
+        notes: &mut Vec<String>,
+    ) -> Result<Stored, SourceError> {
+        let skip = self.skip.saturating_sub(passed);
+        let skipped = io::copy(&mut (&mut reader).take(skip), &mut io::sink());
         let skipped = skipped.map_err(|cause| self.read_error(cause, 0))?;
-        if skipped < self.skip {
+        if skipped < skip {
             return Err(self.length_error(skipped, false, ""));
         }
         let mut stored = self.format.none();
-        with_samples!(&mut stored, samples => self.fill_samples(&mut reader, samples)?);
-        self.expect_end(reader, notes)?;
+        if self.pick.is_all() {
+            with_samples!(&mut stored, samples => self.fill_samples(&mut reader, samples)?);
+            self.expect_end(reader, notes)?;
+        } else {
+            let at = passed.saturating_sub(self.skip);
+            let mut reader = PickReader::new(reader, &self.pick, self.format.bytes(), at);
+            with_samples!(&mut stored, samples => self.fill_samples(&mut reader, samples)?);
+        }
         Ok(stored)
     }
 
@@ -160,7 +194,7 @@ impl SampleStream<'_> {
             let before = self.skip + (start * size_of::<T>()) as u64;
             let arrived = self.fill(reader, bytemuck::cast_slice_mut(&mut samples[start..]), before)?;
             if arrived < step * size_of::<T>() {
-                return Err(self.length_error(before + arrived as u64, false, ""));
+                return Err(self.length_error(self.reached(before + arrived as u64), false, ""));
             }
         }
         let file_is_native = (self.endian == Endian::Little) == cfg!(target_endian = "little");
@@ -182,6 +216,16 @@ impl SampleStream<'_> {
             }
         }
         Ok(filled)
+    }
+
+    /// How far a stream reaches that ends after so many bytes of what is read.
+    fn reached(&self, read: u64) -> u64 {
+        if self.pick.is_all() {
+            return read;
+        }
+        let bytes = self.format.bytes();
+        let samples = read.saturating_sub(self.skip) / bytes;
+        self.skip.saturating_add(self.pick.end(samples).saturating_mul(bytes))
     }
 
     /// Judges bytes after the last sample; on the way a gzip stream checks its sum.

@@ -1,14 +1,20 @@
 //! Text in files of samples: the lines of a header, and samples written out.
 
+mod hex;
+mod number;
+
 use std::{
     fs::File,
-    io::{self, BufRead, BufReader, Read},
+    io::{self, BufRead, BufReader, Read, Seek, SeekFrom},
     path::Path,
 };
 
+pub(super) use hex::HexReader;
+pub(super) use number::{number, numbers};
+
 use super::{
     SourceError, file,
-    stored::{Element, Stored, with_samples},
+    stored::{Stored, with_samples},
     stream::SampleStream,
 };
 
@@ -16,10 +22,18 @@ use super::{
 const MAX_LINE: u64 = 1 << 16;
 const MAX_HEADER: u64 = 1 << 22;
 
+/// What Windows' editors put in front of text.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// The longest number written out, in bytes.
 const MAX_NUMBER: usize = 400;
 
-/// The lines of a header, with samples after it.
+/// The bytes of a text without the byte order mark that may stand in front of it.
+pub(super) fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes)
+}
+
+/// The lines of a header, with samples after it or between them.
 pub(super) struct HeaderLines<'a> {
     path: &'a Path,
     reader: BufReader<File>,
@@ -27,29 +41,76 @@ pub(super) struct HeaderLines<'a> {
     pub line: u64,
     /// Bytes that were read.
     pub offset: u64,
+    /// How many of them were lines.
+    in_lines: u64,
+    /// Length of the file.
+    bytes: u64,
 }
 
 impl<'a> HeaderLines<'a> {
     /// Opens a file.
     pub fn open(path: &'a Path) -> Result<Self, SourceError> {
-        let (file, _) = file::open(path)?;
-        Ok(Self { path, reader: BufReader::new(file), line: 0, offset: 0 })
+        let (file, bytes) = file::open(path)?;
+        Ok(Self { path, reader: BufReader::new(file), line: 0, offset: 0, in_lines: 0, bytes })
     }
 
-    /// The next line without its end; `None` at the end of the file. Bytes that are no UTF-8 become U+FFFD.
+    /// The next line without its end, and without a mark in front of the first; `None` at the end of the file. Bytes that are
+    /// no UTF-8 become U+FFFD.
     pub fn next(&mut self) -> Result<Option<String>, SourceError> {
         let mut bytes = Vec::new();
+        let is_first = self.offset == 0;
         self.line += 1;
         let read = (&mut self.reader).take(MAX_LINE).read_until(b'\n', &mut bytes);
-        self.offset += read.map_err(|cause| file::io_error(self.path, cause))? as u64;
-        if bytes.len() as u64 == MAX_LINE || self.offset > MAX_HEADER {
+        let read = read.map_err(|cause| file::io_error(self.path, cause))? as u64;
+        self.offset += read;
+        self.in_lines += read;
+        if read == MAX_LINE || self.in_lines > MAX_HEADER {
             return Err(self.error("the header goes on and on; is its end, or the file, damaged?"));
         }
         if bytes.is_empty() {
             return Ok(None);
         }
-        let text = String::from_utf8_lossy(&bytes);
+        let bytes = if is_first { without_mark(&bytes) } else { &bytes };
+        let text = String::from_utf8_lossy(bytes);
         Ok(Some(text.trim_end_matches(['\n', '\r']).to_owned()))
+    }
+
+    /// Goes over so many bytes without reading them; whether the file has them.
+    pub fn skip_bytes(&mut self, bytes: u64) -> Result<bool, SourceError> {
+        let to = self.offset.saturating_add(bytes);
+        if to > self.bytes {
+            return Ok(false);
+        }
+        self.reader.seek(SeekFrom::Start(to)).map_err(|cause| file::io_error(self.path, cause))?;
+        self.offset = to;
+        Ok(true)
+    }
+
+    /// Goes over so many numbers or words; whether the file has them. The end of the last one's line comes next.
+    pub fn skip_words(&mut self, words: u64) -> Result<bool, SourceError> {
+        let (mut left, mut in_word) = (words, false);
+        while left > 0 {
+            let buffer = self.reader.fill_buf().map_err(|cause| file::io_error(self.path, cause))?;
+            if buffer.is_empty() {
+                return Ok(left == 1 && in_word);
+            }
+            let mut used = 0;
+            for byte in buffer {
+                let space = byte.is_ascii_whitespace();
+                if in_word && space {
+                    left -= 1;
+                }
+                in_word = !space;
+                if left == 0 {
+                    break;
+                }
+                used += 1;
+                self.line += u64::from(*byte == b'\n');
+            }
+            self.offset += used as u64;
+            self.reader.consume(used);
+        }
+        Ok(true)
     }
 
     /// Something wrong with the last line.
@@ -61,11 +122,6 @@ impl<'a> HeaderLines<'a> {
 /// Something wrong with a line.
 pub(super) fn line_error(path: &Path, line: u64, problem: impl Into<String>) -> SourceError {
     SourceError::Line { path: path.to_owned(), line, problem: problem.into() }
-}
-
-/// Splits into numbers, all of which must be; `None` if one is not.
-pub(super) fn numbers<T: std::str::FromStr>(text: &str) -> Option<Vec<T>> {
-    text.split_whitespace().map(|word| word.parse().ok()).collect()
 }
 
 /// Reads samples written out as numbers between spaces or commas.
@@ -86,7 +142,7 @@ pub(super) fn read_samples(stream: &SampleStream, mut reader: impl BufRead) -> R
                 });
             };
             samples.try_reserve(1).map_err(|_| stream.out_of_memory())?;
-            samples.push(sample(&word).ok_or_else(|| SourceError::Field {
+            samples.push(number(&word).ok_or_else(|| SourceError::Field {
                 path: stream.path.to_owned(),
                 field: format!("sample {at}"),
                 problem: format!("expected a number of type {:?}, found `{word}`", stream.format),
@@ -94,10 +150,6 @@ pub(super) fn read_samples(stream: &SampleStream, mut reader: impl BufRead) -> R
         }
     });
     Ok(stored)
-}
-
-fn sample<T: Element>(word: &str) -> Option<T> {
-    word.parse().ok()
 }
 
 /// The next run of bytes without space and comma; a run that is too long for a number is cut.
@@ -119,41 +171,5 @@ fn next_word(reader: &mut impl BufRead) -> io::Result<Option<String>> {
     }
 }
 
-/// Turns pairs of hexadecimal digits into bytes.
-pub(super) struct HexReader<R> {
-    reader: R,
-}
-
-impl<R: BufRead> HexReader<R> {
-    /// Bytes of the digits that `reader` holds.
-    pub fn new(reader: R) -> Self {
-        Self { reader }
-    }
-
-    fn digit(&mut self) -> io::Result<Option<u8>> {
-        loop {
-            let Some(&byte) = self.reader.fill_buf()?.first() else { return Ok(None) };
-            self.reader.consume(1);
-            if !byte.is_ascii_whitespace() {
-                let digit = char::from(byte).to_digit(16);
-                let digit = digit.ok_or_else(|| {
-                    io::Error::new(io::ErrorKind::InvalidData, "expected a hexadecimal digit")
-                })?;
-                return Ok(Some(digit as u8));
-            }
-        }
-    }
-}
-
-impl<R: BufRead> Read for HexReader<R> {
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        for (filled, byte) in bytes.iter_mut().enumerate() {
-            match (self.digit()?, self.digit()?) {
-                (Some(high), Some(low)) => *byte = high << 4 | low,
-                (None, _) => return Ok(filled),
-                (Some(_), None) => return Err(io::ErrorKind::UnexpectedEof.into()),
-            }
-        }
-        Ok(bytes.len())
-    }
-}
+#[cfg(test)]
+mod tests;

@@ -13,7 +13,8 @@ use glam::DVec3;
 use super::{
     Selection, SourceError, file,
     grid::Grid,
-    stored::{Scaling, StoredFormat},
+    pick::Pick,
+    stored::{Element, Scaling, StoredFormat},
     stream::{Packing, SampleStream, Surplus, mend_by_header},
     text::{HeaderLines, numbers},
     volume::{Endian, VolumeData},
@@ -70,6 +71,7 @@ pub(super) fn read(path: &Path, _selection: &Selection) -> Result<VolumeData, So
         path,
         what: grid.what(bytes),
         samples: grid.samples(),
+        pick: Pick::ALL,
         format: array.format,
         endian: Endian::Big,
         packing: if is_text { Packing::Text } else { Packing::Plain },
@@ -134,11 +136,7 @@ impl Header {
     }
 }
 
-fn three<T: std::str::FromStr>(
-    lines: &HeaderLines,
-    keyword: &str,
-    rest: &str,
-) -> Result<[T; 3], SourceError> {
+fn three<T: Element>(lines: &HeaderLines, keyword: &str, rest: &str) -> Result<[T; 3], SourceError> {
     let three = numbers(rest).and_then(|numbers| numbers.try_into().ok());
     three.ok_or_else(|| expected(lines, &format!("three numbers after {keyword}"), rest))
 }

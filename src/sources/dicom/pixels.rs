@@ -8,6 +8,7 @@ use super::{
     header::{Header, unsupported},
 };
 use crate::sources::{
+    pick::Pick,
     pieces::append,
     stored::{Stored, StoredFormat},
     stream::{Packing, SampleStream, Surplus, mend_by_header},
@@ -47,6 +48,7 @@ pub(super) fn read(path: &Path, notes: &mut Vec<String>) -> Result<Stored, Sourc
         path,
         what: format!("{} x {} pixels of {} bytes in {} frames", size[0], size[1], format.bytes(), size[2]),
         samples: bytes / format.bytes(),
+        pick: Pick::ALL,
         format,
         endian: if header.syntax.big_endian { Endian::Big } else { Endian::Little },
         packing: Packing::Unpacked,

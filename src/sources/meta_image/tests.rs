@@ -1,10 +1,10 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use super::super::{
-    Samples,
-    self_describing::tests::{Folder, mutate, zlib},
+    Samples, Space,
+    self_describing::tests::{Folder, is_at, mutate, place_of, zlib},
 };
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 const HEAD: &str = "ObjectType = Image\nNDims = 3\nDimSize = 2 3 4\nElementType = MET_UCHAR\n";
 
@@ -64,6 +64,54 @@ fn types_byte_order_spacing_and_directions_are_kept() {
 }
 
 #[test]
+fn channels_are_colours_or_chosen_and_so_is_one_of_several_volumes() {
+    let folder = Folder::new();
+    let of = |size: &str, more: &str| {
+        let count = size.split(' ').count();
+        local(&format!("NDims = {count}\nDimSize = {size}\nElementType = MET_UCHAR\n{more}"), &ramp())
+    };
+    let rgb = of("2 2 2", "ElementNumberOfChannels = 3\n");
+    let Samples::Rgba8(colours) = folder.read("a.mha", &rgb).samples else { panic!() };
+    assert_eq!((colours.len(), colours[7]), (8, [21, 22, 23, 255]));
+    assert_eq!(folder.chosen("a.mha", &rgb, 0, Some(2)).unwrap().sample([1, 0, 0]), Some(5.0));
+    let pairs = of("2 3 2", "ElementNumberOfChannels = 2\n");
+    assert_eq!(folder.read("a.mha", &pairs).sample([1, 0, 0]), Some(2.0));
+    let times = of("2 3 2 2", "ElementSpacing = 1 2 3 4\nOffset = 5 6 7 8\n");
+    let second = folder.chosen("a.mha", &times, 1, None).unwrap();
+    assert_eq!((second.sample([0; 3]), second.frame.origin), (Some(12.0), DVec3::new(5.0, 6.0, 7.0)));
+    assert!(folder.chosen("a.mha", &times, 2, None).unwrap_err().ends_with("its 2 volumes are 0 to 1"));
+}
+
+#[test]
+fn voxels_lie_where_the_header_says() {
+    let folder = Folder::new();
+    let read = |more: &str| folder.read("a.mha", local(&format!("{HEAD}{more}"), &ramp()));
+    assert_eq!(read("").frame.space, Space::Unknown);
+    let placed = "Offset = 10 -20 30\nElementSpacing = 1 2 3\nTransformMatrix = 0.8 0.6 0 -0.6 0.8 0 0 0 1\n";
+    let world = read(placed);
+    assert_eq!((world.frame.space, world.frame.origin), (Space::World, DVec3::new(10.0, -20.0, 30.0)));
+    assert!(is_at(place_of(&world, [1, 2, 3]), [10.0 + 0.8 - 2.4, -20.0 + 0.6 + 3.2, 39.0]));
+    // ITK's world is left, posterior, superior.
+    let patient = read(&format!("{placed}AnatomicalOrientation = RAI\nDistanceUnits = cm\n"));
+    assert_eq!((patient.frame.space, patient.sample([1, 2, 0])), (Space::Patient, Some(0.0)));
+    assert!(is_at(place_of(&patient, [1, 2, 0]), [-100.0, 200.0, 300.0]));
+    assert!(is_at(place_of(&patient, [0, 2, 0]), [-108.0, 194.0, 300.0]));
+}
+
+#[test]
+fn headers_from_windows_are_read() {
+    let folder = Folder::new();
+    folder.file("vol.raw", ramp());
+    let header = format!("\u{feff}{HEAD}ElementDataFile = C:\\scans\\vol.raw\n").replace('\n', "\r\n");
+    let volume = folder.read("a.mhd", header);
+    assert_eq!(volume.samples, Samples::U8(ramp()));
+    assert_eq!(
+        volume.notes,
+        ["its header names `C:\\scans\\vol.raw`, which is no file here; `vol.raw` beside it is read"]
+    );
+}
+
+#[test]
 fn what_is_wrong_is_told_with_its_line() {
     let folder = Folder::new();
     let with = |old: &str, new: &str| folder.refusal("a.mha", local(&HEAD.replace(old, new), &ramp()));
@@ -73,7 +121,12 @@ fn what_is_wrong_is_told_with_its_line() {
     assert!(with("2 3 4", "2 3").starts_with("a.mha:2: NDims: expected the count of `DimSize`"));
     assert!(with("MET_UCHAR", "MET_UCHAR_ARRAY").starts_with("a.mha:4: ElementType: expected MET_CHAR"));
     assert!(with("MET_UCHAR", "MET_UCHAR\nElementSpacing = 1 nan 1").contains("spacing 1 x NaN x 1"));
-    assert!(with("MET_UCHAR", "MET_UCHAR\nElementNumberOfChannels = 3").contains("split the channels"));
+    assert!(with("MET_UCHAR", "MET_UCHAR\nElementNumberOfChannels = 0").contains("expected a number from 1"));
+    assert!(
+        with("MET_UCHAR", "MET_UCHAR\nElementNumberOfChannels = 2")
+            .contains("voxels of 1 byte, number 0 of 2 at each need 47")
+    );
+    assert!(with("MET_UCHAR", "MET_UCHAR\nDistanceUnits = feet").contains("expected um, mm, cm or m"));
     assert!(with("MET_UCHAR", "MET_UCHAR\nCompressedData = True").contains("the zlib stream is corrupt"));
     assert!(with("MET_UCHAR", "MET_UCHAR\nHeaderSize = -7").contains("expected bytes from 0, or -1"));
     assert!(folder.refusal("a.mhd", HEAD).contains("ElementDataFile: it is missing"));

@@ -1,8 +1,8 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use super::super::{
-    Samples,
-    self_describing::tests::{Folder, gzip, mutate, values},
+    Labels, Samples, Space,
+    self_describing::tests::{Folder, gzip, is_at, mutate, place_of, values},
 };
 use super::*;
 use glam::Vec3;
@@ -136,11 +136,72 @@ fn the_affine_turns_the_volume_and_scaling_applies() {
 }
 
 #[test]
-fn more_than_a_volume_is_its_first() {
+fn one_of_several_volumes_is_read_and_one_of_several_numbers() {
     let folder = Folder::new();
-    let times = folder.read("a.nii", Nifti::new(false, false, &[2, 3, 2, 2], 2).with(&ramp()));
-    assert_eq!((times.size, times.samples.len()), ([2, 3, 2], 12));
-    assert_eq!(times.notes, ["only the first of its 2 volumes (time points or components) is read"]);
+    let file = Nifti::new(false, false, &[2, 3, 2, 2], 2).with(&ramp());
+    let times = folder.read("a.nii", &file);
+    assert_eq!((times.size, times.samples), ([2, 3, 2], Samples::U8((0..12).collect())));
+    assert_eq!(
+        times.notes,
+        ["it holds 2 volumes (dim[4], time); number 0, counted from 0, is read: `index` chooses"]
+    );
+    for packed in [file.clone(), gzip(&file)] {
+        assert_eq!(folder.chosen("a.nii", &packed, 1, None).unwrap().sample([1, 0, 0]), Some(13.0));
+        let refused = folder.chosen("a.nii", &packed, 2, None).unwrap_err();
+        assert!(refused.ends_with("index is 2, but its 2 volumes are 0 to 1"), "{refused}");
+    }
+    let vectors = Nifti::new(true, true, &[2, 2, 1, 2, 3], 2).with(&ramp());
+    let chosen = folder.chosen("a.nii", vectors, 1, Some(2)).unwrap();
+    assert_eq!(values(&chosen), [20.0, 21.0, 22.0, 23.0]);
+}
+
+#[test]
+fn colours_are_read_whole_or_channel_by_channel() {
+    let folder = Folder::new();
+    let rgb = Nifti::new(false, false, &[2, 2, 2], 128).with(&ramp());
+    let Samples::Rgba8(colours) = folder.read("a.nii", &rgb).samples else { panic!() };
+    assert_eq!((colours.len(), colours[2]), (8, [6, 7, 8, 255]));
+    assert_eq!(folder.chosen("a.nii", &rgb, 0, Some(1)).unwrap().sample([1, 0, 0]), Some(4.0));
+    let rgba = Nifti::new(false, false, &[2, 3], 2304).with(&ramp());
+    assert_eq!(
+        folder.read("a.nii", &rgba).samples,
+        Samples::Rgba8((0..6).map(|i| [4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3]).collect())
+    );
+    // The same as planes of bytes, by what they mean.
+    let mut planes = Nifti::new(false, false, &[2, 2, 2, 1, 3], 2);
+    planes.put(68, &2003_i16.to_le_bytes());
+    let Samples::Rgba8(colours) = folder.read("a.nii", planes.with(&ramp())).samples else { panic!() };
+    assert_eq!(colours[1], [1, 9, 17, 255]);
+}
+
+#[test]
+fn place_window_and_labels_are_kept() {
+    let folder = Folder::new();
+    let mut nifti = Nifti::new(false, false, &[2, 3, 4], 2);
+    nifti.bytes[123] = 3;
+    nifti.floats(124, 192, &[200.0, 10.0]);
+    nifti.put(68, &1002_i16.to_le_bytes());
+    nifti.floats(268, 376, &[7.0, 8.0, 9.0]);
+    let unplaced = folder.read("a.nii", nifti.with(&ramp()));
+    assert_eq!(unplaced.frame.space, Space::Unknown);
+    assert_eq!((unplaced.window, unplaced.labels), (Some((10.0, 200.0)), Some(Labels::default())));
+    // The sform wins; its unit is the micrometre.
+    nifti.put(252, &1_i16.to_le_bytes());
+    nifti.sform([[-2000.0, 0.0, 0.0, 9e3], [0.0, 3e3, 0.0, -4e3], [0.0, 1e3, 4e3, 5e3]]);
+    let placed = folder.read("a.nii", nifti.with(&ramp()));
+    assert_eq!((placed.frame.space, placed.sample([1, 0, 0])), (Space::Patient, Some(0.0)));
+    assert!(is_at(place_of(&placed, [1, 0, 0]), [9.0, -4.0, 5.0]));
+    assert!(is_at(place_of(&placed, [0, 0, 2]), [7.0, -4.0, 13.0]));
+    assert!(is_at(place_of(&placed, [1, 1, 0]), [9.0, -1.0, 6.0]));
+    // Without it, the qform.
+    nifti.put(254, &0_i16.to_le_bytes());
+    let placed = folder.read("a.nii", nifti.with(&ramp()));
+    assert!(is_at(placed.frame.origin, [7e-3, 8e-3, 9e-3]));
+    let mut fractions = Nifti::new(true, true, &[6], 16);
+    fractions.put(504, &1002_i32.to_le_bytes());
+    fractions.floats(124, 192, &[0.0, 0.0]);
+    let volume = folder.read("a.nii", fractions.with(&0.5_f32.to_be_bytes().repeat(6)));
+    assert_eq!((volume.labels, volume.window), (None, None));
 }
 
 #[test]
@@ -154,7 +215,8 @@ fn what_is_wrong_is_told() {
     assert!(refused(&of(&[1 << 40, 1 << 40, 1 << 40], 64)).contains("limit"));
     assert!(refused(&of(&[2, 0, 5], 2)).contains("every side"));
     assert!(refused(&of(&[2, -3, 5], 2)).contains("every side"));
-    assert!(refused(&of(&[2, 3, 4], 128)).contains("its samples are colours (datatype 128)"));
+    assert!(refused(&of(&[2, 3, 4], 128)).contains("2 x 3 x 4 voxels of 3 bytes need 72"));
+    assert!(refused(&of(&[2, 3, 4], 32)).contains("its samples are complex numbers (datatype 32)"));
     assert!(refused(&of(&[2, 3, 4], 1)).contains("single bits"));
     let mut nan = of(&[2, 3, 4], 2);
     nan.floats(76, 104, &[1.0, f64::NAN, 1.0, 1.0]);

@@ -5,8 +5,11 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 
 use super::{
-    Endian, Packing, SourceError, unsupported,
-    words::{anatomical, packing, sample_format, vectors},
+    Endian, Packing, SourceError,
+    axes::{Axis, Direction, WorldOf},
+    segments::Segments,
+    unsupported,
+    words::{millimetres, packing, sample_format, vectors, world_of},
 };
 use crate::sources::{
     pieces::{self, MAX_FILES},
@@ -14,30 +17,13 @@ use crate::sources::{
     text::{HeaderLines, line_error, numbers},
 };
 
-/// One axis of the samples, the fastest first.
-#[derive(Debug, Clone)]
-pub(super) struct Axis {
-    /// Counted from 1.
-    pub number: usize,
-    /// How many samples it has.
-    pub size: u64,
-    /// From one to the next, in the world of the file.
-    pub direction: Option<DVec3>,
-    /// How far that is, where no direction is written.
-    pub spacing: Option<f64>,
-    /// Whether it is an axis of space.
-    pub is_space: bool,
-    /// What the file calls it.
-    pub kind: String,
-}
-
 /// Where the samples are.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum DataFile {
     /// Behind the header.
     Attached,
-    /// In these files, one after the other.
-    Files(Vec<PathBuf>),
+    /// In files of these names, one after the other.
+    Files(Vec<String>),
 }
 
 /// What the header says.
@@ -60,10 +46,14 @@ pub(super) struct Header {
     pub line_skip: u64,
     /// Then bytes in front of them; -1 for all but the last.
     pub byte_skip: i64,
-    /// Factors from the world of the file to right, anterior, superior; `None` where it is not anatomical.
-    pub space: Option<DVec3>,
+    /// The world of the file.
+    pub space: WorldOf,
+    /// The centre of the first sample in it.
+    pub origin: Option<DVec3>,
     /// Millimetres of the unit of length.
     pub millimetres: f64,
+    /// What the values mean.
+    pub segments: Segments,
 }
 
 impl Header {
@@ -72,9 +62,13 @@ impl Header {
         let mut lines = HeaderLines::open(path)?;
         // The magic was looked at to find this reader.
         lines.next()?;
-        let mut fields = Fields::default();
+        let (mut fields, mut segments) = (Fields::default(), Segments::default());
         while let Some(line) = lines.next()?.filter(|line| !line.is_empty()) {
-            if line.starts_with('#') || line.contains(":=") {
+            if line.starts_with('#') {
+                continue;
+            }
+            if let Some((key, value)) = line.split_once(":=") {
+                segments.line(key, value);
                 continue;
             }
             let (name, value) = line.split_once(':').ok_or_else(|| {
@@ -95,7 +89,7 @@ impl Header {
             }
         }
         let mut header = fields.header(path)?;
-        header.data_offset = lines.offset;
+        (header.data_offset, header.segments) = (lines.offset, segments);
         Ok(header)
     }
 
@@ -177,8 +171,10 @@ impl Fields {
             data_offset: 0,
             line_skip,
             byte_skip,
-            space: self.get("space").and_then(|field| anatomical(&field.value)),
+            space: self.get("space").map_or(WorldOf::Other, |field| world_of(&field.value)),
+            origin: self.origin(path)?,
             millimetres: self.millimetres(),
+            segments: Segments::default(),
         })
     }
 
@@ -192,16 +188,10 @@ impl Fields {
                 dimension.error(path, &format!("expected the count of `sizes`, {}, at most 16", sizes.len()))
             );
         }
-        let spacings: Vec<Option<f64>> = match self.get("spacings") {
-            None => vec![None; sizes.len()],
-            Some(field) => numbers::<f64>(&field.value)
-                .filter(|spacings| spacings.len() == sizes.len())
-                .ok_or_else(|| field.error(path, "expected a number for each axis"))?
-                .into_iter()
-                .map(Some)
-                .collect(),
-        };
-        let directions: Option<Vec<Option<DVec3>>> = match self.get("space directions") {
+        let spacings = self.of_axes(path, "spacings", sizes.len())?;
+        let mins = self.of_axes(path, "axis mins", sizes.len())?;
+        let maxs = self.of_axes(path, "axis maxs", sizes.len())?;
+        let directions: Option<Vec<Direction>> = match self.get("space directions") {
             None => None,
             Some(field) => {
                 Some(vectors(&field.value).filter(|vectors| vectors.len() == sizes.len()).ok_or_else(
@@ -209,29 +199,50 @@ impl Fields {
                 )?)
             }
         };
-        let kinds: Vec<String> = self.get("kinds").map_or(Vec::new(), |field| {
-            field.value.split_whitespace().map(|kind| kind.trim_matches('"').to_owned()).collect()
-        });
-        let axis = |index: usize| {
-            let kind = kinds.get(index).cloned().unwrap_or_else(|| "no kind".to_owned());
-            let direction = directions.as_ref().map(|directions| directions[index]);
-            let kind_is_space =
-                matches!(&*kind.to_lowercase(), "domain" | "space" | "no kind" | "???" | "none");
-            Axis {
-                number: index + 1,
-                size: sizes[index],
-                direction: direction.flatten(),
-                spacing: spacings[index],
-                is_space: direction.map_or(kind_is_space, |direction| direction.is_some()),
-                kind,
-            }
+        let words = |name: &str| -> Vec<String> {
+            let words = |field: &Field| {
+                field.value.split_whitespace().map(|word| word.trim_matches('"').to_owned()).collect()
+            };
+            self.get(name).map_or(Vec::new(), words)
+        };
+        let (kinds, centerings) =
+            (words("kinds"), words(if self.get("centerings").is_some() { "centerings" } else { "centers" }));
+        let axis = |index: usize| Axis {
+            number: index + 1,
+            size: sizes[index],
+            direction: directions.as_ref().map_or(Direction::Unwritten, |directions| directions[index]),
+            spacing: spacings[index],
+            ends: [mins[index], maxs[index]],
+            is_node_centred: centerings.get(index).is_some_and(|word| word.eq_ignore_ascii_case("node")),
+            kind: kinds
+                .get(index)
+                .filter(|kind| !matches!(&***kind, "???" | "none"))
+                .cloned()
+                .unwrap_or_default(),
         };
         Ok((0..sizes.len()).map(axis).collect())
     }
 
+    /// A number for each axis, if they are written.
+    fn of_axes(&self, path: &Path, name: &str, axes: usize) -> Result<Vec<Option<f64>>, SourceError> {
+        let Some(field) = self.get(name) else { return Ok(vec![None; axes]) };
+        let written = numbers::<f64>(&field.value).filter(|numbers| numbers.len() == axes);
+        let written = written.ok_or_else(|| field.error(path, "expected a number for each axis"))?;
+        Ok(written.into_iter().map(Some).collect())
+    }
+
+    /// The centre of the first sample.
+    fn origin(&self, path: &Path) -> Result<Option<DVec3>, SourceError> {
+        let Some(field) = self.get("space origin") else { return Ok(None) };
+        match vectors(&field.value).as_deref() {
+            Some([Direction::Along(origin)]) => Ok(Some(*origin)),
+            Some([Direction::None]) => Ok(Some(DVec3::NAN)),
+            _ => Err(field.error(path, "expected a vector such as (0,0,0)")),
+        }
+    }
+
     fn data(&self, path: &Path, dimension: usize) -> Result<DataFile, SourceError> {
         let Some(field) = self.get("data file") else { return Ok(DataFile::Attached) };
-        let folder = path.parent().unwrap_or(Path::new(""));
         let mut words = field.value.split_whitespace();
         let (names, sub): (Vec<String>, _) = if words.next() == Some("LIST") {
             let names = self.0.iter().filter(|field| field.name.is_empty() && !field.value.is_empty());
@@ -251,20 +262,14 @@ impl Fields {
             let found = format!("line {}: files of fewer axes than a slice", field.line);
             return Err(unsupported(path, found, "join them with `unu join` or `unu save`"));
         }
-        Ok(DataFile::Files(names.iter().map(|name| folder.join(name)).collect()))
+        Ok(DataFile::Files(names))
     }
 
     /// Millimetres of the unit that is written; nothing else than a length is one.
     fn millimetres(&self) -> f64 {
         let units = self.get("space units").or(self.get("units"));
         let unit = units.and_then(|field| field.value.split('"').find(|unit| !unit.trim().is_empty()));
-        match unit.map(str::trim) {
-            Some("m") => 1e3,
-            Some("cm") => 10.0,
-            Some("um" | "µm" | "μm" | "micron" | "microns" | "micrometer") => 1e-3,
-            Some("nm") => 1e-6,
-            _ => 1.0,
-        }
+        unit.and_then(|unit| millimetres(unit.trim())).unwrap_or(1.0)
     }
 }
 

@@ -4,7 +4,11 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::{Packing, SourceError, header::Field, unsupported};
+use super::{
+    Packing, SourceError,
+    axes::{Direction, WorldOf},
+    header::Field,
+};
 use crate::sources::{stored::StoredFormat, text::numbers};
 
 /// Type of a sample.
@@ -41,45 +45,61 @@ pub(super) fn packing(path: &Path, field: &Field) -> Result<Packing, SourceError
         "gzip" | "gz" => Packing::Gzip,
         "txt" | "text" | "ascii" => Packing::Text,
         "hex" => Packing::Hex,
-        "bzip2" | "bz2" => {
-            let mend = "pack it with gzip: `unu save -f nrrd -e gzip -i IN -o OUT`";
-            return Err(unsupported(path, "its encoding, bzip2, is not read".to_owned(), mend));
-        }
-        _ => return Err(field.error(path, "expected raw, gzip, ascii or hex")),
+        "bzip2" | "bz2" => Packing::Bzip2,
+        _ => return Err(field.error(path, "expected raw, gzip, bzip2, ascii or hex")),
     })
 }
 
-/// Factors from an anatomical world to right, anterior, superior.
-pub(super) fn anatomical(space: &str) -> Option<DVec3> {
-    match space.to_lowercase().as_str() {
-        "ras" | "right-anterior-superior" | "rast" | "right-anterior-superior-time" => Some(DVec3::ONE),
-        "las" | "left-anterior-superior" | "last" | "left-anterior-superior-time" => {
-            Some(DVec3::new(-1.0, 1.0, 1.0))
-        }
-        "lps" | "left-posterior-superior" | "lpst" | "left-posterior-superior-time" => {
-            Some(DVec3::new(-1.0, -1.0, 1.0))
-        }
-        _ => None,
+/// What the world of a file is.
+pub(super) fn world_of(space: &str) -> WorldOf {
+    let space = space.to_lowercase();
+    let space = space.strip_suffix("-time").unwrap_or(&space);
+    match space {
+        "ras" | "rast" | "right-anterior-superior" => WorldOf::Patient(DVec3::ONE),
+        "las" | "last" | "left-anterior-superior" => WorldOf::Patient(DVec3::new(-1.0, 1.0, 1.0)),
+        "lps" | "lpst" | "left-posterior-superior" => WorldOf::Patient(DVec3::new(-1.0, -1.0, 1.0)),
+        "3d-left-handed" => WorldOf::LeftHanded,
+        _ => WorldOf::Other,
     }
 }
 
-/// Vectors of up to three components, or `none`; `None` if anything else is there.
-pub(super) fn vectors(text: &str) -> Option<Vec<Option<DVec3>>> {
+/// Millimetres of a unit of length.
+pub(super) fn millimetres(unit: &str) -> Option<f64> {
+    Some(match unit.to_lowercase().as_str() {
+        "km" | "kilometer" | "kilometre" => 1e6,
+        "m" | "meter" | "metre" | "meters" | "metres" => 1e3,
+        "cm" | "centimeter" | "centimetre" => 10.0,
+        "mm" | "millimeter" | "millimetre" | "millimeters" | "millimetres" => 1.0,
+        "um" | "µm" | "μm" | "micron" | "microns" | "micrometer" | "micrometre" => 1e-3,
+        "nm" | "nanometer" | "nanometre" => 1e-6,
+        "å" | "angstrom" | "angstroms" => 1e-7,
+        "pm" | "picometer" | "picometre" => 1e-9,
+        "in" | "inch" | "inches" => 25.4,
+        _ => return None,
+    })
+}
+
+/// Vectors, or `none`; `None` if anything else is there. A vector of NaN stands for `none`, and so does one that is 0 in space and
+/// has a component beyond it, of time.
+pub(super) fn vectors(text: &str) -> Option<Vec<Direction>> {
     let mut vectors = Vec::new();
     let mut rest = text.trim_start();
     while !rest.is_empty() {
         if let Some(after) = rest.strip_prefix("none") {
-            vectors.push(None);
+            vectors.push(Direction::None);
             rest = after.trim_start();
             continue;
         }
         let (vector, after) = rest.strip_prefix('(')?.split_once(')')?;
         let components: Vec<f64> = numbers(&vector.replace(',', " "))?;
-        let component = |axis: usize| components.get(axis).copied().unwrap_or(0.0);
-        if !(1..=3).contains(&components.len()) {
+        if !(1..=8).contains(&components.len()) {
             return None;
         }
-        vectors.push(Some(DVec3::new(component(0), component(1), component(2))));
+        let component = |axis: usize| components.get(axis).copied().unwrap_or(0.0);
+        let along = DVec3::new(component(0), component(1), component(2));
+        let is_beyond = along == DVec3::ZERO && components.iter().skip(3).any(|component| *component != 0.0);
+        let is_none = is_beyond || components.iter().all(|component| component.is_nan());
+        vectors.push(if is_none { Direction::None } else { Direction::Along(along) });
         rest = after.trim_start();
     }
     Some(vectors)

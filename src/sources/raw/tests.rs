@@ -6,6 +6,7 @@ use flate2::{Compression, write::GzEncoder};
 use tempfile::TempDir;
 
 use super::*;
+use crate::sources::Samples;
 
 fn layout(size: [u32; 3], format: SampleFormat) -> RawLayout {
     RawLayout { size, format, endian: Endian::Little, spacing: Vec3::ONE, skip_bytes: 0 }
@@ -154,4 +155,22 @@ fn an_impossible_layout_is_refused_before_the_file_is_touched() {
     assert!(
         text(&RawLayout { skip_bytes: u64::MAX, ..cube }).contains("skip_bytes 18446744073709551615 exceeds")
     );
+}
+
+#[test]
+fn what_is_skipped_of_a_plain_file_is_not_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.raw");
+    let mut file = fs::File::create(&path).unwrap();
+    // A file with a hole: reading through it would take minutes.
+    let skip_bytes = 1 << 32;
+    file.set_len(skip_bytes).unwrap();
+    std::io::Seek::seek(&mut file, std::io::SeekFrom::End(0)).unwrap();
+    file.write_all(&[1, 2, 3]).unwrap();
+    let start = std::time::Instant::now();
+    let layout = RawLayout { skip_bytes, ..layout([3, 1, 1], SampleFormat::U8) };
+    assert_eq!(read_raw(&path, &layout).unwrap().samples, Samples::U8(vec![1, 2, 3]));
+    assert!(start.elapsed().as_secs_f64() < 1.0, "{:?}", start.elapsed());
+    let text = message(&path, &RawLayout { skip_bytes: skip_bytes + 1, ..layout });
+    assert!(text.contains("voxels after 4294967297 skipped bytes need 4294967300 (1 fewer"), "{text}");
 }

@@ -3,6 +3,7 @@
 use std::{io::Write, path::PathBuf};
 
 use flate2::{Compression, write::GzEncoder, write::ZlibEncoder};
+use glam::DVec3;
 use tempfile::TempDir;
 
 use super::*;
@@ -27,6 +28,18 @@ impl Folder {
     /// What a file of these bytes is read as.
     pub fn read(&self, name: &str, bytes: impl AsRef<[u8]>) -> VolumeData {
         read_volume(&self.file(name, bytes), &Selection::default()).unwrap()
+    }
+
+    /// What is read of it if one of several is chosen.
+    pub fn chosen(
+        &self,
+        name: &str,
+        bytes: impl AsRef<[u8]>,
+        index: u32,
+        component: Option<u32>,
+    ) -> Result<VolumeData, String> {
+        let selection = Selection { index, component, ..Selection::default() };
+        read_volume(&self.file(name, bytes), &selection).map_err(|error| error.to_string())
     }
 
     /// What a file of these bytes is refused with, without the folder.
@@ -55,6 +68,18 @@ pub(in crate::sources) fn zlib(bytes: &[u8]) -> Vec<u8> {
 /// All samples of a volume.
 pub(in crate::sources) fn values(volume: &VolumeData) -> Vec<f32> {
     (0..volume.samples.len()).map(|index| volume.samples.get(index).unwrap()).collect()
+}
+
+/// Where the centre of a voxel lies in the world of the file, mm.
+pub(in crate::sources) fn place_of(volume: &VolumeData, voxel: [u32; 3]) -> DVec3 {
+    let steps = DVec3::from(voxel.map(f64::from)) * volume.spacing.as_dvec3();
+    let [x, y, z] = volume.frame.directions;
+    volume.frame.origin + x * steps.x + y * steps.y + z * steps.z
+}
+
+/// Whether two places are the same to a hundredth of a micrometre.
+pub(in crate::sources) fn is_at(place: DVec3, expected: [f64; 3]) -> bool {
+    place.distance(DVec3::from(expected)) < 1e-5
 }
 
 /// Reads a file with its first `header` bytes damaged in 2,000 ways: it must end, and not by a panic.
