@@ -191,11 +191,17 @@ fn load_meshes(
             Ok(data) => {
                 let note = |note: &String| Problem::note(note.clone()).on(entity, "Mesh");
                 let problems = data.notes.iter().map(note).collect();
-                commands.entity(entity).insert(LoadedMesh::new(data));
+                let origin = data.origin;
+                let mut entity = commands.entity(entity);
+                match origin == DVec3::ZERO {
+                    true => entity.remove::<DataFrame>(),
+                    false => entity.insert(DataFrame::SceneUnits(glam::DAffine3::from_translation(origin))),
+                };
+                entity.insert(LoadedMesh::new(data));
                 problems
             }
-            // What was loaded last stays. `Mesh.0` is the path of a file.
-            Err(problem) => vec![problem.on(entity, "Mesh.0")],
+            // What was loaded last stays.
+            Err(problem) => vec![problem.on(entity, "Mesh.path")],
         };
         commands.entity(entity).insert(ReadFor(mesh.clone()));
         FilesRead::set(&mut commands, entity, "Mesh", files);
@@ -219,11 +225,10 @@ fn unsupported(path: &Path) -> Option<Problem> {
 
 fn read_mesh(mesh: &Mesh) -> Result<MeshData, Box<Problem>> {
     Ok(match mesh {
-        Mesh::File(path) => match unsupported(path.path()) {
+        Mesh::File { path, normals } => match unsupported(path.path()) {
             Some(problem) => return Err(Box::new(problem)),
-            None => {
-                sources::read_obj(path.path()).map_err(|error| Box::new(Problem::error(error.to_string())))?
-            }
+            None => sources::read_obj(path.path(), *normals)
+                .map_err(|error| Box::new(Problem::error(error.to_string())))?,
         },
         Mesh::Sphere { radius, subdivisions } => sources::procedural::sphere(*radius, *subdivisions),
         Mesh::Box { size } => sources::procedural::cuboid(*size),

@@ -904,10 +904,10 @@ fn paths_of_files_are_as_written_in_the_file_they_stand_in() {
         ("scenes/scene.ron", r#"(include: ["parts/more.ron"], entities: { "a": ( Mesh: Sphere() ) })"#),
         ("scenes/parts/more.ron", r#"(entities: { "b": ( Mesh: File("b.obj") ) })"#),
     ]);
-    desk.set("a", "Mesh", Mesh::File(AssetPath::new("x.obj")));
-    desk.set("b", "Mesh.0", AssetPath::new("../y.obj"));
+    desk.set("a", "Mesh", Mesh::file("x.obj"));
+    desk.set("b", "Mesh.path", AssetPath::new("../y.obj"));
     let resolved = |desk: &Desk, name: &str| match desk.get::<Mesh>(name) {
-        Mesh::File(path) => path.path().to_owned(),
+        Mesh::File { path, .. } => path.path().to_owned(),
         other => panic!("{other:?}"),
     };
     assert_eq!(resolved(&desk, "a"), desk.path("scenes/x.obj"));

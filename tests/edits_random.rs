@@ -320,7 +320,7 @@ fn what_is_left_out_has_its_default() {
         (&Mesh::default(), "Sphere()"),
         (&Mesh::Sphere { radius: 0.1, subdivisions: 5 }, "Sphere(radius: 0.1)"),
         (&Mesh::CornellBox, "CornellBox"),
-        (&Mesh::File(AssetPath::new("a \"b\".obj")), r#"File("a \"b\".obj")"#),
+        (&Mesh::file("a \"b\".obj"), r#"File("a \"b\".obj")"#),
         (
             &Subsurface { specular: Some(Specular::default()), ..Subsurface::default() },
             "(specular: Some(()))",

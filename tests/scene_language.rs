@@ -146,7 +146,7 @@ fn every_field_of_every_component_can_be_written() {
     let turntable = Turntable { degrees_per_second: -9.0, axis: Vec3::X };
     assert_eq!(get::<Turntable>(&app, "sun"), turntable);
     assert_eq!(get::<DirectionalLight>(&app, "sun").irradiance, Vec3::new(3.0, 2.9, 2.7));
-    let Mesh::File(path) = get(&app, "file") else { panic!() };
+    let Mesh::File { path, .. } = get(&app, "file") else { panic!() };
     assert_eq!((path.written(), path.path()), ("meshes/ball.obj", &*files.0.path().join("meshes/ball.obj")));
     assert_eq!(get::<Transform>(&app, "file").scale, Scale::PerAxis(Vec3::new(1.0, 2.0, 3.0)));
     assert_eq!(get::<Transform>(&app, "sphere").scale, Scale::Uniform(2.0));
@@ -493,7 +493,7 @@ fn includes_merge_and_paths_start_at_the_file_that_names_them() {
     assert_eq!(names, ["b", "a", "top", "bone"]);
     assert_eq!(document.files.len(), 4, "each file is read once: {:?}", document.files);
     let parts = files.0.path().join("parts").canonicalize().unwrap();
-    let Mesh::File(path) = get(&app, "a") else { panic!() };
+    let Mesh::File { path, .. } = get(&app, "a") else { panic!() };
     assert_eq!(path.path().parent().unwrap().canonicalize().unwrap(), parts);
     let Volume::Raw { path, .. } = get(&app, "b") else { panic!() };
     assert!(path.path().ends_with("parts/data/b.raw"), "{path:?}");

@@ -1,13 +1,16 @@
-use super::{AssetPath, Placement, Range, Transform, Unit};
+use super::{AssetPath, Leading, Placement, Range, Required, Transform, Unit};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::{Vec2, Vec3};
+
+pub use crate::sources::mesh::Normals;
 
 /// The shape of a surface.
 ///
 /// | variant | fields | range | default |
 /// |---|---|---|---|
-/// | `File(path)` | a Wavefront OBJ file | – | – |
+/// | `File` | `path` of a Wavefront OBJ file, which alone needs no name | – | – |
+/// | | `normals`: `Auto` (the file's; else by its smoothing groups; else `Smooth(40.0)`), `Flat`, or `Smooth(degrees)`: means over the faces that meet at no more than this angle | 0 to 180 | `Auto` |
 /// | `Sphere` | `radius`, scene units; `subdivisions` of an icosahedron | above 0; 0 to 8 | 1.0; 5 |
 /// | `Box` | `size` along x, y and z, scene units | above 0 | (1, 1, 1) |
 /// | `Plane` | `size` along x and z, scene units; it faces +y | above 0 | (1, 1) |
@@ -15,6 +18,7 @@ use glam::{Vec2, Vec3};
 ///
 /// ```ron
 /// Mesh: File("../assets/knot.obj")
+/// Mesh: File(path: "../assets/gear.obj", normals: Flat)
 /// Mesh: Sphere(radius: 2.0)
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
@@ -22,7 +26,14 @@ use glam::{Vec2, Vec3};
 #[require(Transform, Placement)]
 pub enum Mesh {
     /// Read from a Wavefront OBJ file.
-    File(AssetPath),
+    File {
+        /// The file.
+        #[reflect(@Leading, @Required)]
+        path: AssetPath,
+        /// How its normals come about.
+        #[reflect(default)]
+        normals: Normals,
+    },
     /// A sphere about the origin.
     Sphere {
         /// Scene units.
@@ -46,6 +57,13 @@ pub enum Mesh {
     },
     /// Floor, ceiling, back and side walls of a room of side 2 about the origin.
     CornellBox,
+}
+
+impl Mesh {
+    /// The mesh in a file.
+    pub fn file(path: impl Into<std::path::PathBuf>) -> Self {
+        Self::File { path: AssetPath::new(path), normals: Normals::default() }
+    }
 }
 
 impl Default for Mesh {

@@ -30,7 +30,7 @@ pub use attributes::{
 };
 pub use auto::Auto;
 pub use directional_light::DirectionalLight;
-pub use mesh::Mesh;
+pub use mesh::{Mesh, Normals};
 pub use phong::Phong;
 pub use presentation::{ChooseVariant, Direction, Label, ReflectChooseVariant, Rgb, Slider};
 pub use ray_cast::RayCast;

@@ -1,15 +1,18 @@
 //! Triangle meshes in memory.
 
 mod assemble;
+mod creases;
 mod extremes;
 mod material;
 mod normals;
+mod orient;
 mod refine;
 mod statistics;
 
 use glam::{DVec3, Vec2, Vec3};
 
 pub(super) use assemble::counted;
+pub use creases::{CREASE_DEGREES, Normals};
 pub use extremes::extremes;
 pub use material::{MeshMaterial, MeshPart, MeshSubsurface, TextureImage};
 pub use statistics::MeshStatistics;
@@ -50,6 +53,18 @@ impl MeshData {
     /// empty.
     pub fn from_triangles(positions: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         assemble::assemble(positions, normals, triangles)
+    }
+
+    /// The same for triangles out of a file: those of connected parts are turned so that they agree, and outwards where the part is closed;
+    /// normals come about by `rule`. `groups` are the smoothing groups of the triangles, if the file has any.
+    pub(super) fn from_file(
+        positions: &[Vec3],
+        normals: &[Vec3],
+        triangles: &[[u32; 3]],
+        groups: Option<&[u32]>,
+        rule: Normals,
+    ) -> Self {
+        assemble::assemble_file(positions, normals, triangles, groups, rule)
     }
 
     /// The least and greatest corner of the axis-aligned box around the vertices, relative to the origin; `None` without any.

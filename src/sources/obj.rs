@@ -12,9 +12,12 @@ use std::{
     path::Path,
 };
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
-use super::{MeshData, SourceError, file, mesh::counted};
+use super::{
+    MeshData, SourceError, file,
+    mesh::{Normals, counted},
+};
 use scan::{Found, Scanner};
 
 /// The longest file that is read, in bytes: 1 GiB. In memory it may take ten times that while it is read.
@@ -23,13 +26,13 @@ pub const MAX_OBJ_BYTES: u64 = 1 << 30;
 /// Bytes at the beginning that tell text from anything else.
 const HEAD_BYTES: usize = 4096;
 
-/// Reads an OBJ mesh; several objects become one mesh.
+/// Reads an OBJ mesh; several objects become one mesh. One that lies far away from its origin is moved near it, which its `origin` tells.
 ///
 /// # Errors
 ///
 /// If the file cannot be read, is longer than [`MAX_OBJ_BYTES`], is not 8-bit text, has a number or index that cannot be
 /// understood or points outside, or no triangle is left. What is dropped without harm is told in the mesh's notes.
-pub fn read_obj(path: &Path) -> Result<MeshData, SourceError> {
+pub fn read_obj(path: &Path, rule: Normals) -> Result<MeshData, SourceError> {
     let (file, bytes) = file::open(path)?;
     if bytes > MAX_OBJ_BYTES {
         let mend = "split or decimate the mesh";
@@ -41,10 +44,22 @@ pub fn read_obj(path: &Path) -> Result<MeshData, SourceError> {
     let byte_order_mark = check_encoding(path, &head[..head.len().min(HEAD_BYTES)])?;
     input.consume(byte_order_mark);
     let mut scanner = Scanner::new(path, input);
-    let (positions, normals, faces) = parse(&mut scanner)?;
+    let (numbers, normals, faces) = parse(&mut scanner)?;
+    let origin = origin_of(&scanner.vertices);
+    let positions: Vec<Vec3> = numbers
+        .into_iter()
+        .map(|number| {
+            scanner
+                .vertices
+                .get(scan::number_of(number))
+                .map_or(Vec3::NAN, |vertex| (vertex - origin).as_vec3())
+        })
+        .collect();
     let mut notes = notes_on(&scanner.found);
-    let triangles = triangles_of(path, &positions, &faces, &mut notes)?;
-    let mut mesh = MeshData::from_triangles(&positions, &normals, &triangles);
+    let groups = scanner.has_groups.then_some(scanner.groups.as_slice());
+    let (triangles, groups) = triangles_of(path, &positions, (&faces, groups), &mut notes)?;
+    let mut mesh = MeshData::from_file(&positions, &normals, &triangles, groups.as_deref(), rule);
+    mesh.origin = origin;
     if mesh.triangles.is_empty() {
         notes.append(&mut mesh.notes);
         return Err(SourceError::NoTriangles {
@@ -55,6 +70,20 @@ pub fn read_obj(path: &Path) -> Result<MeshData, SourceError> {
     notes.append(&mut mesh.notes);
     mesh.notes = notes;
     Ok(mesh)
+}
+
+/// How many times farther from the origin than it is large a mesh must lie to be moved there: beyond, single precision would show.
+const FAR: f64 = 256.0;
+
+/// What positions are to be relative to.
+fn origin_of(vertices: &[DVec3]) -> DVec3 {
+    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let finite = vertices.iter().filter(|vertex| vertex.is_finite());
+    let (low, high) = finite.fold(none, |(low, high), vertex| (low.min(*vertex), high.max(*vertex)));
+    let (centre, extent) = ((low + high) / 2.0, (high - low).max_element());
+    let is_far = centre.is_finite() && centre.abs().max_element() > FAR * extent;
+    // Whole units, so that what is written stays recognisable.
+    if is_far && extent > 0.0 { centre.round() } else { DVec3::ZERO }
 }
 
 /// Refuses what is not 8-bit text; gives the length of a byte order mark to skip.
@@ -128,15 +157,16 @@ fn vectors(numbers: &[f32]) -> Vec<Vec3> {
 fn triangles_of(
     path: &Path,
     positions: &[Vec3],
-    faces: &Faces,
+    (faces, groups): (&Faces, Option<&[u32]>),
     notes: &mut Vec<String>,
-) -> Result<Vec<[u32; 3]>, SourceError> {
+) -> Result<(Vec<[u32; 3]>, Option<Vec<u32>>), SourceError> {
     let is_finite =
         |corner: &u32| positions.get(*corner as usize).is_some_and(|position| position.is_finite());
     let mut triangles = Vec::with_capacity(faces.indices.len() / 3);
     let mut dropped = 0_u64;
     let (mut corners, mut cut) = (Vec::new(), Vec::new());
-    for face in faces.iter() {
+    let mut group_of = groups.map(|_| Vec::new());
+    for (index, face) in faces.iter().enumerate() {
         if !face.iter().all(is_finite) {
             dropped += 1;
             continue;
@@ -145,6 +175,9 @@ fn triangles_of(
         corners.extend(face.iter().map(|&corner| positions[corner as usize]));
         cut.clear();
         triangulate::triangulate(&corners, &mut cut);
+        if let (Some(all), Some(groups)) = (&mut group_of, groups) {
+            all.extend(std::iter::repeat_n(groups.get(index).copied().unwrap_or(0), cut.len()));
+        }
         triangles.extend(cut.iter().map(|triangle| triangle.map(|corner| face[corner])));
     }
     if triangles.len() > u32::MAX as usize / 3 {
@@ -155,7 +188,7 @@ fn triangles_of(
         let (vertices, faces) = (counted(positions.len() as u64, "used vertex"), counted(dropped, "face"));
         notes.push(format!("{not_finite} of {vertices} with a NaN or infinite coordinate; {faces} dropped"));
     }
-    Ok(triangles)
+    Ok((triangles, group_of))
 }
 
 fn notes_on(found: &Found) -> Vec<String> {

@@ -11,6 +11,7 @@ use tyndall_needs::needs;
 use glam::Vec3;
 
 use super::*;
+use crate::sources::mesh::Normals;
 
 fn data(folder: &str) -> PathBuf {
     Path::new(&std::env::var_os("TYNDALL_DATA").unwrap()).join(folder)
@@ -113,7 +114,7 @@ fn check_meshes(folder: &str, expected: &[(&str, Outcome)]) {
     let listed: BTreeSet<_> = expected.iter().map(|(name, _)| (*name).to_owned()).collect();
     assert_eq!(names(folder, ".obj"), listed, "a file without an outcome, or the other way round");
     for (name, outcome) in expected {
-        match (read_obj(&data(folder).join(name)), outcome) {
+        match (read_obj(&data(folder).join(name), Normals::default()), outcome) {
             (Ok(mesh), Mesh(triangles, open_edges, note)) => {
                 let statistics = mesh.statistics();
                 assert_eq!(
@@ -146,7 +147,9 @@ fn real_meshes_load_whole() {
 #[needs(data)]
 #[test]
 fn a_concave_ring_keeps_its_hole() {
-    let statistics = read_obj(&data("meshes/odd").join("assimp_concave_polygon.obj")).unwrap().statistics();
+    let statistics = read_obj(&data("meshes/odd").join("assimp_concave_polygon.obj"), Normals::default())
+        .unwrap()
+        .statistics();
     // The area that Newell's formula gives for the outline, which a fan around its first corner exceeds by far.
     assert!((statistics.area - 0.245_496_6).abs() < 1e-6, "{}", statistics.area);
 }

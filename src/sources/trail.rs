@@ -89,6 +89,7 @@ fn note_state(path: &Path, state: impl FnOnce() -> FileState) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sources::mesh::Normals;
     use crate::sources::{Selection, read_obj, read_volume};
 
     fn names(trail: &Trail) -> Vec<String> {
@@ -125,9 +126,9 @@ mod tests {
     #[test]
     fn outside_nothing_is_noted_and_inside_each_for_itself() {
         let missing = Path::new("there is no such.obj");
-        let ((_, inner), outer) = follow(|| follow(|| read_obj(missing)));
+        let ((_, inner), outer) = follow(|| follow(|| read_obj(missing, Normals::default())));
         assert_eq!((inner.len(), outer.len()), (1, 0));
         let (_, trail) = follow(|| ());
-        assert!(read_obj(missing).is_err() && trail.is_empty());
+        assert!(read_obj(missing, Normals::default()).is_err() && trail.is_empty());
     }
 }

@@ -33,7 +33,7 @@ pub const TABLE: Table = Table {
     scene: SCENE,
     rows: &[
         ("eye.ViewCamera.projection.height", "11.0", ""),
-        ("shard.Mesh.0", "\"other.obj\"", RESHAPED),
+        ("shard.Mesh.path", "\"other.obj\"", RESHAPED),
         ("shard.Mesh", "Sphere(radius: 1.0, subdivisions: 1)", RESHAPED),
         (
             "shard.Transform.scale",

@@ -98,18 +98,18 @@ fn an_entity_is_chosen_by_what_it_has() {
 fn a_path_says_whether_its_file_is_there() {
     let mut path = AssetPath::new("../assets/lotus.obj");
     path.resolve(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes"));
-    let mut harness = inspector(Mesh::File(path));
+    let mut harness = inspector(Mesh::File { path, normals: Default::default() });
     let explanation = |harness: &Harness<Inspected<Mesh>>| {
-        harness.get_by_label("Mesh.0").accesskit_node().description().unwrap()
+        harness.get_by_label("Mesh.path").accesskit_node().description().unwrap()
     };
     assert!(explanation(&harness).ends_with("lotus.obj: exists"), "{}", explanation(&harness));
-    harness.get_by_label("Mesh.0").focus();
+    harness.get_by_label("Mesh.path").focus();
     harness.run();
     harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
-    harness.get_by_label("Mesh.0").type_text("../assets/rose.obj");
+    harness.get_by_label("Mesh.path").type_text("../assets/rose.obj");
     harness.key_press(Key::Enter);
     harness.run();
-    let Mesh::File(path) = &harness.state().edits.component else { panic!("a file") };
+    let Mesh::File { path, .. } = &harness.state().edits.component else { panic!("a file") };
     assert_eq!(path.written(), "../assets/rose.obj");
     assert_eq!(path.path(), Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/../assets/rose.obj"));
     assert!(explanation(&harness).ends_with("rose.obj: does not exist"));

@@ -63,7 +63,7 @@ fn components() -> Vec<Box<dyn Reflect>> {
             direction: Vec3::new(-1.0, -2.0, -0.5),
             irradiance: Vec3::new(3.0, 2.9, 2.7),
         }),
-        Box::new(Mesh::File(AssetPath::new("assets/lotus.obj"))),
+        Box::new(Mesh::file("assets/lotus.obj")),
         Box::new(TransferFunction {
             points: TransferFunction::default().points_in_force(),
             ..Default::default()

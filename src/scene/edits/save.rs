@@ -40,7 +40,7 @@ impl Edits {
         for component in self.document.entities.iter().flat_map(|entity| entity.components.iter()) {
             let value = component.value.as_any();
             let named = match (value.downcast_ref::<Mesh>(), value.downcast_ref::<Volume>()) {
-                (Some(Mesh::File(path)), _) => path,
+                (Some(Mesh::File { path, .. }), _) => path,
                 (_, Some(Volume::File { path, .. } | Volume::Raw { path, .. })) => path,
                 _ => continue,
             };

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
-use super::{MeshData, normals};
+use super::creases::{self, CREASE_DEGREES, Normals, Rule};
+use super::{MeshData, normals, orient};
 
 /// `1 face`, `2 faces`, `3 vertices`.
 pub(in crate::sources) fn counted(count: u64, noun: &str) -> String {
@@ -37,11 +38,98 @@ pub(super) fn assemble(positions: &[Vec3], normals: &[Vec3], triangles: &[[u32; 
     mesh
 }
 
+/// See [`MeshData::from_file`].
+pub(super) fn assemble_file(
+    positions: &[Vec3],
+    given: &[Vec3],
+    triangles: &[[u32; 3]],
+    groups: Option<&[u32]>,
+    rule: Normals,
+) -> MeshData {
+    let mut notes = Vec::new();
+    let kept = usable(positions, triangles, &mut notes);
+    let groups: Option<Vec<u32>> = groups.map(|groups| kept.iter().map(|&index| groups[index]).collect());
+    let mut triangles: Vec<[u32; 3]> = kept.into_iter().map(|index| triangles[index]).collect();
+    orient::orient(positions, &mut triangles, &mut notes);
+    let has_normals = given.iter().any(|normal| normals::unit(normal.as_dvec3()).is_some());
+    let computed = match (rule, groups.as_deref()) {
+        (Normals::Auto, _) if has_normals => None,
+        (Normals::Smooth(degrees), _) if degrees >= 180.0 => None,
+        (Normals::Auto, Some(groups)) => Some(Rule::Groups(groups)),
+        (Normals::Auto, None) => Some(Rule::Crease(CREASE_DEGREES)),
+        (Normals::Flat, _) => Some(Rule::Crease(0.0)),
+        (Normals::Smooth(degrees), _) => Some(Rule::Crease(degrees)),
+    };
+    let mut mesh = match computed {
+        Some(rule) => {
+            let corners = creases::corner_normals(positions, &triangles, rule);
+            join_corners(positions, &corners, &triangles)
+        }
+        None => {
+            let given = if matches!(rule, Normals::Auto) { given } else { &[] };
+            let mut normals = complete_normals(positions, given, &triangles, &mut notes);
+            if has_normals {
+                turn_with_faces(positions, &mut normals, &triangles, &mut notes);
+            }
+            join_vertices(positions, &normals, &triangles)
+        }
+    };
+    mesh.notes = notes;
+    mesh
+}
+
+/// Turns all normals where most of them point to the other side than their faces.
+fn turn_with_faces(
+    positions: &[Vec3],
+    normals: &mut [Vec3],
+    triangles: &[[u32; 3]],
+    notes: &mut Vec<String>,
+) {
+    let (mut with, mut against) = (0_u64, 0_u64);
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|index| positions[index as usize]);
+        let Some(facing) = normals::facing(a, b, c) else { continue };
+        for index in triangle {
+            let along = normals[*index as usize].as_dvec3().dot(facing);
+            with += u64::from(along > 0.0);
+            against += u64::from(along < 0.0);
+        }
+    }
+    if against > with {
+        normals.iter_mut().for_each(|normal| *normal = -*normal);
+        notes.push("its normals point to the other side than its faces do; they are turned over".to_owned());
+    }
+}
+
+/// Makes one vertex of each different pair of position and normal of a corner.
+fn join_corners(positions: &[Vec3], corners: &[[Vec3; 3]], triangles: &[[u32; 3]]) -> MeshData {
+    let mut mesh = MeshData { triangles: Vec::with_capacity(triangles.len()), ..MeshData::default() };
+    let mut joined = HashMap::new();
+    for (triangle, normals) in triangles.iter().zip(corners) {
+        let vertex = |corner: usize| {
+            let (position, normal) = (positions[triangle[corner] as usize], normals[corner]);
+            *joined.entry((position_key(position), position_key(normal))).or_insert_with(|| {
+                mesh.positions.push(position);
+                mesh.normals.push(normal);
+                (mesh.positions.len() - 1) as u32
+            })
+        };
+        let corners = [0, 1, 2].map(vertex);
+        mesh.triangles.push(corners);
+    }
+    mesh
+}
+
 /// The triangles with three finite corners and an area.
 fn usable_triangles(positions: &[Vec3], triangles: &[[u32; 3]], notes: &mut Vec<String>) -> Vec<[u32; 3]> {
+    usable(positions, triangles, notes).into_iter().map(|index| triangles[index]).collect()
+}
+
+/// Which triangles have three finite corners and an area.
+fn usable(positions: &[Vec3], triangles: &[[u32; 3]], notes: &mut Vec<String>) -> Vec<usize> {
     let (mut outside, mut not_finite, mut flat) = (0, 0, 0);
     let mut usable = Vec::with_capacity(triangles.len());
-    for &triangle in triangles {
+    for (index, &triangle) in triangles.iter().enumerate() {
         let [Some(a), Some(b), Some(c)] = triangle.map(|index| positions.get(index as usize).copied()) else {
             outside += 1;
             continue;
@@ -51,7 +139,7 @@ fn usable_triangles(positions: &[Vec3], triangles: &[[u32; 3]], notes: &mut Vec<
         } else if normals::facing(a, b, c).is_none() {
             flat += 1;
         } else {
-            usable.push(triangle);
+            usable.push(index);
         }
     }
     if outside > 0 {

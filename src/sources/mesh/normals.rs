@@ -51,7 +51,7 @@ pub(super) fn angle_weighted(positions: &[Vec3], welded: &[u32], triangles: &[[u
 }
 
 /// The angle at `a` between the edges to `b` and `c`, in radians.
-fn angle_at(a: Vec3, b: Vec3, c: Vec3) -> f64 {
+pub(super) fn angle_at(a: Vec3, b: Vec3, c: Vec3) -> f64 {
     let [a, b, c] = [a, b, c].map(|position| position.as_dvec3());
     let (u, v) = (b - a, c - a);
     u.cross(v).length().atan2(u.dot(v))

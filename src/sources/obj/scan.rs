@@ -9,6 +9,8 @@ use std::{
     path::Path,
 };
 
+use glam::DVec3;
+
 use super::statements::Statements;
 use crate::sources::{SourceError, file};
 
@@ -46,8 +48,22 @@ pub(super) struct Scanner<'a, R> {
     ahead: Vec<(Element, u64, u64)>,
     /// The greatest vertex and normal index in `ahead`.
     farthest: [u64; 2],
+    /// The vertices as the file has them. `tobj`, which knows 32 bits only, is given their numbers in their place.
+    pub vertices: Vec<DVec3>,
+    /// The smoothing group in force, and of each face that was given out; empty while the file names none.
+    group: u32,
+    pub has_groups: bool,
+    pub groups: Vec<u32>,
     pub found: Found,
     pub error: Option<SourceError>,
+}
+
+/// Numbers that a 32-bit float holds exactly: a vertex's is given out in two such parts.
+const PART: u64 = 1 << 16;
+
+/// The vertex whose number was given out as these coordinates.
+pub(super) fn number_of(coordinates: glam::Vec3) -> usize {
+    coordinates.x as usize + PART as usize * coordinates.y as usize
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,6 +81,10 @@ impl<'a, R: BufRead> Scanner<'a, R> {
             given: 0,
             ahead: Vec::new(),
             farthest: [0; 2],
+            vertices: Vec::new(),
+            group: 0,
+            has_groups: false,
+            groups: Vec::new(),
             found: Found::default(),
             error: None,
         }
@@ -124,7 +144,11 @@ impl<'a, R: BufRead> Scanner<'a, R> {
         match words.next().unwrap_or_default() {
             "v" => {
                 self.found.vertices += 1;
-                self.vector("v", words.clone())?;
+                let vertex = self.vector("v", words.clone())?;
+                self.normalised.clear();
+                let number = self.vertices.len() as u64;
+                self.normalised.extend(format!("v {} {} 0\n", number % PART, number / PART).into_bytes());
+                self.vertices.push(vertex);
                 let mut rest = words.skip(3);
                 // One value more is the weight of a rational curve; three are a colour.
                 if let (Some(weight), None) = (rest.next(), rest.next()) {
@@ -135,6 +159,7 @@ impl<'a, R: BufRead> Scanner<'a, R> {
                 self.found.normals += 1;
                 self.vector("vn", words)?;
             }
+            "s" => self.smoothing_group(words.next().unwrap_or_default()),
             "f" => self.face(words)?,
             "p" | "l" => self.found.points_and_lines += 1,
             "curv" | "curv2" | "surf" => self.found.free_forms += 1,
@@ -148,9 +173,10 @@ impl<'a, R: BufRead> Scanner<'a, R> {
         &mut self,
         keyword: &str,
         mut words: impl Iterator<Item = &'w str>,
-    ) -> Result<(), SourceError> {
+    ) -> Result<DVec3, SourceError> {
+        let mut vector = DVec3::ZERO;
         self.normalised.extend_from_slice(keyword.as_bytes());
-        for place in ["x", "y", "z"] {
+        for (axis, place) in ["x", "y", "z"].into_iter().enumerate() {
             let Some(word) = words.next() else {
                 return Err(
                     self.line_error(&format!("`{keyword}` needs three numbers, {place} is missing; add it"))
@@ -159,17 +185,28 @@ impl<'a, R: BufRead> Scanner<'a, R> {
             // How C prints what is not a number: nan(ind), -1.#IND, 1.#QNAN.
             let is_nan = word.contains('#') || word.contains("nan(");
             let word = if is_nan { "nan" } else { word };
-            if word.parse::<f32>().is_err() {
+            let Ok(number) = word.parse() else {
                 let quoted = quote(word);
                 return Err(self.line_error(&format!(
                     "`{quoted}` is not a number; `{keyword}` needs three, write it like -1.5e3"
                 )));
-            }
+            };
+            vector[axis] = number;
             self.normalised.push(b' ');
             self.normalised.extend_from_slice(word.as_bytes());
         }
         self.normalised.push(b'\n');
-        Ok(())
+        Ok(vector)
+    }
+
+    /// `s 3`, `s off`: the group of the faces that follow.
+    fn smoothing_group(&mut self, word: &str) {
+        // Faces before the first such statement belong to no group, which is how every file without groups begins too.
+        if self.groups.is_empty() {
+            self.groups = vec![0; self.found.faces as usize];
+        }
+        self.has_groups = true;
+        self.group = word.parse().unwrap_or(0);
     }
 
     /// Gives out a face of at least three corners, each with a vertex and a normal.
@@ -200,6 +237,9 @@ impl<'a, R: BufRead> Scanner<'a, R> {
             self.found.is_cut_off = !self.statements.is_terminated;
         } else {
             self.found.faces += 1;
+            if self.has_groups {
+                self.groups.push(self.group);
+            }
         }
         Ok(())
     }

@@ -3,6 +3,7 @@
 use std::fs;
 
 use super::*;
+use crate::sources::mesh::Normals;
 
 const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
     f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
@@ -11,7 +12,7 @@ fn read(bytes: impl AsRef<[u8]>) -> Result<MeshData, SourceError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.obj");
     fs::write(&path, bytes).unwrap();
-    read_obj(&path)
+    read_obj(&path, Normals::default())
 }
 
 /// The error's text without the folder.
@@ -226,14 +227,14 @@ fn a_file_too_long_is_refused_unread() {
     let path = folder.path().join("a.obj");
     // Sparse: takes no room on the disk.
     fs::File::create(&path).unwrap().set_len(MAX_OBJ_BYTES + 1).unwrap();
-    let text = read_obj(&path).unwrap_err().to_string();
+    let text = read_obj(&path, Normals::default()).unwrap_err().to_string();
     assert!(
         text.ends_with("1073741825 bytes; at most 1073741824 are read; split or decimate the mesh"),
         "{text}"
     );
-    let text = read_obj(folder.path()).unwrap_err().to_string();
+    let text = read_obj(folder.path(), Normals::default()).unwrap_err().to_string();
     assert!(text.contains("expected a file, found a folder"), "{text}");
-    let text = read_obj(&folder.path().join("b.obj")).unwrap_err().to_string();
+    let text = read_obj(&folder.path().join("b.obj"), Normals::default()).unwrap_err().to_string();
     assert!(text.ends_with("no such file; did you mean `a.obj`?"), "{text}");
 }
 
@@ -266,7 +267,7 @@ fn broken_files_never_panic() {
             }
         }
         fs::write(&path, &bytes).unwrap();
-        if let Ok(mesh) = read_obj(&path) {
+        if let Ok(mesh) = read_obj(&path, Normals::default()) {
             loaded += 1;
             assert!(mesh.normals.iter().all(|normal| (normal.length() - 1.0).abs() < 1e-5));
             assert!(mesh.triangles.iter().flatten().all(|&index| (index as usize) < mesh.positions.len()));

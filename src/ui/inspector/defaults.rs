@@ -141,7 +141,7 @@ mod tests {
     fn variants_begin_with_their_defaults() {
         assert_eq!(chosen(Projection::default(), "Orthographic"), Projection::Orthographic { height: 2.0 });
         assert_eq!(chosen(Mesh::CornellBox, "Box"), Mesh::Box { size: Vec3::ONE });
-        assert_eq!(chosen(Mesh::CornellBox, "File"), Mesh::File(Default::default()));
+        assert_eq!(chosen(Mesh::CornellBox, "File"), Mesh::file(""));
         assert_eq!(chosen(Auto::<u32>::Auto, "Value"), Auto::Value(0));
         // A radius must be above 0.
         assert!(matches!(chosen(SampleRadius::Auto, "Millimetres"), SampleRadius::Millimetres(r) if r > 0.0));
