@@ -42,7 +42,7 @@ fn a_cube_is_closed_however_its_lines_end() {
         let statistics = read(&text).unwrap().statistics();
         assert_eq!(
             (statistics.vertices, statistics.triangles, statistics.open_edges),
-            (8, 12, 0),
+            (24, 12, 0),
             "{text:?}"
         );
         assert_eq!(statistics.area, 6.0);
@@ -72,6 +72,38 @@ fn errors_name_the_line_as_the_file_counts_it() {
         message(format!("{CUBE}vn 0 0 1\nf 1//1 2//1 3//2\n"))
             .starts_with("a.obj:16: a face names normal 2, but 1")
     );
+}
+
+#[test]
+fn a_mesh_far_from_its_origin_keeps_its_shape() {
+    // A pyramid of a tenth of a unit at a place of a national grid.
+    let text = "v 512345.00 4512345.00 120.0\nv 512345.10 4512345.00 120.0\nv 512345.00 4512345.10 120.0\nv 512345.00 4512345.00 120.1\n\
+                f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    let mesh = read(text).unwrap();
+    assert_eq!(mesh.origin, glam::DVec3::new(512345.0, 4512345.0, 120.0));
+    let (low, high) = mesh.bounds().unwrap();
+    assert!((high - low).abs_diff_eq(Vec3::splat(0.1), 1e-6), "{low} {high}");
+    assert_eq!(read("v 1 2 3\nv 2 2 3\nv 1 3 3\nf 1 2 3\n").unwrap().origin, glam::DVec3::ZERO);
+}
+
+#[test]
+fn edges_are_hard_where_the_file_or_the_angle_says_so() {
+    // Two squares that meet at a right angle.
+    let bent = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 1\nv 1 1 1\n";
+    let vertices = |groups: [&str; 2], rule: Normals| {
+        let [first, second] = groups;
+        let text = format!("{bent}{first}\nf 1 2 3 4\n{second}\nf 2 5 6 3\n");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("bent.obj");
+        std::fs::write(&path, text).unwrap();
+        read_obj(&path, rule).unwrap().positions.len()
+    };
+    assert_eq!(vertices(["", ""], Normals::Auto), 8, "a right angle is a crease");
+    assert_eq!(vertices(["s 1", ""], Normals::Auto), 6, "a group is smooth whatever its angles");
+    assert_eq!(vertices(["s 1", "s 2"], Normals::Auto), 8);
+    assert_eq!(vertices(["s off", ""], Normals::Auto), 8);
+    assert_eq!(vertices(["s off", ""], Normals::Smooth(100.0)), 6, "what is asked for counts for more");
+    assert_eq!(vertices(["s 1", ""], Normals::Flat), 8);
 }
 
 #[test]

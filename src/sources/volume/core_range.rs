@@ -76,20 +76,32 @@ fn core(counted: &[(f32, u64)], range: (f32, f32)) -> (f32, f32) {
 }
 
 /// The values without a least and a greatest one that stand far from all others.
-fn without_fill(mut values: &[(f32, u64)]) -> &[(f32, u64)] {
-    if let [(fill, _), rest @ ..] = values
-        && rest.len() >= FEWEST_VALUES
-        && rest[0].0 - fill > rest[rest.len() - 1].0 - rest[0].0
-    {
-        values = rest;
+fn without_fill(values: &[(f32, u64)]) -> &[(f32, u64)] {
+    // A greatest one can hide a least one.
+    without_least_fill(without_greatest_fill(without_least_fill(values)))
+}
+
+fn without_least_fill(values: &[(f32, u64)]) -> &[(f32, u64)] {
+    match values {
+        [(fill, _), rest @ ..]
+            if rest.len() >= FEWEST_VALUES && rest[0].0 - fill > rest[rest.len() - 1].0 - rest[0].0 =>
+        {
+            rest
+        }
+        _ => values,
     }
-    if let [rest @ .., (fill, _)] = values
-        && rest.len() >= FEWEST_VALUES
-        && fill - rest[rest.len() - 1].0 > rest[rest.len() - 1].0 - rest[0].0
-    {
-        values = rest;
+}
+
+fn without_greatest_fill(values: &[(f32, u64)]) -> &[(f32, u64)] {
+    match values {
+        [rest @ .., (fill, _)]
+            if rest.len() >= FEWEST_VALUES
+                && fill - rest[rest.len() - 1].0 > rest[rest.len() - 1].0 - rest[0].0 =>
+        {
+            rest
+        }
+        _ => values,
     }
-    values
 }
 
 /// The values without those that few samples at the ends have.
