@@ -11,7 +11,7 @@ use tyndall::components::{Phong, Shading};
 use tyndall::gpu::{Gpu, GpuOptions, Target, read_texture};
 use tyndall::report::Report;
 use tyndall::scene::{Edits, LiveScene, Override, SceneEntities, Side};
-use tyndall::ui::{Log, OpenPanels, Totals};
+use tyndall::ui::{Command, Log, OpenPanels, Recent, Totals};
 use tyndall::window::{Frame, Painter, Session, SessionOptions};
 use tyndall::{Comparison, Split, TyndallPlugins, View};
 use tyndall_needs::needs;
@@ -37,6 +37,20 @@ const WAX: &str = r#"(
         ),
     },
 )"#;
+
+/// A file as the window system hands it over.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
 
 /// A session on a texture.
 struct Screen {
@@ -89,6 +103,21 @@ impl Screen {
         let (context, picture) = (self.session.context(), self.session.picture());
         self.painter.paint(&self.gpu, context, &mut output, picture, target);
         next
+    }
+
+    /// A frame on which files are dropped.
+    fn drop_files(&mut self, files: &[PathBuf]) {
+        let dropped =
+            |path: &PathBuf| -> egui::DroppedFileHandle { std::sync::Arc::new(Dropped(path.clone())) };
+        let input = RawInput {
+            screen_rect: Some(egui::Rect::from_min_size(Pos2::ZERO, vec2(SIZE.x as f32, SIZE.y as f32))),
+            time: Some(self.started.elapsed().as_secs_f64()),
+            focused: true,
+            dropped_files: files.iter().map(dropped).collect(),
+            ..Default::default()
+        };
+        let mut frame = self.session.frame(input, self.painter.picture());
+        self.painter.skip(&self.gpu, &mut frame.output);
     }
 
     /// Frames as long as any is due.
@@ -543,4 +572,152 @@ fn a_hundred_edits_leave_nothing_behind() {
     let report = screen.session.world().resource::<Report>();
     assert_eq!(Some(&report.gpu_bytes), bytes.as_ref());
     assert!(report.timeline.len() < 10 && report.pipelines.len() < 10, "{report:?}");
+}
+
+/// A square before a camera that brings it into the picture.
+const SQUARE: &str = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3\nf 1 3 4\n";
+
+impl Screen {
+    fn names(&mut self) -> Vec<String> {
+        let mut names: Vec<String> =
+            self.session.world().resource::<SceneEntities>().0.keys().cloned().collect();
+        names.sort();
+        names
+    }
+
+    fn file(&self, name: &str, bytes: &str) -> PathBuf {
+        let path = self.folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, bytes).unwrap();
+        path
+    }
+
+    fn told(&mut self) -> String {
+        let lines = self.session.world().resource::<Log>().lines();
+        lines.iter().map(|line| format!("{}\n", line.text)).collect()
+    }
+}
+
+#[needs(gpu)]
+#[test]
+fn dropped_data_are_shown_and_saved_as_a_scene_that_is_followed() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    let square = screen.file("meshes/square.obj", SQUARE);
+    screen.drop_files(&[square.clone()]);
+    screen.settle();
+    assert_eq!(screen.names(), ["camera", "fill light", "key light", "square"]);
+    let [red, green, _] = screen.colour(0.0, 0.0);
+    assert!(red > 60.0 && green > 60.0, "a square of no colour in place of the red ball: {red} {green}");
+    assert!(screen.session.is_unsaved() && screen.session.shown().is_untitled);
+    assert!(!screen.session.may_quit(), "asked as for edits");
+
+    // Beside the mesh's folder, so that the path of the mesh is another than from here.
+    let scene = screen.folder.path().join("made");
+    screen.session.act(Command::SaveAs(scene));
+    let scene = screen.folder.path().join("made.ron");
+    let text = std::fs::read_to_string(&scene).unwrap();
+    assert!(text.contains("File(\"meshes/square.obj\")"), "{text}");
+    assert!(!screen.session.is_unsaved() && !screen.session.shown().is_untitled);
+    assert_eq!(screen.session.scene(), scene);
+    let mut app = App::new();
+    app.add_plugins(TyndallPlugins);
+    let document = tyndall::render::load_scene(&mut app, &scene, &[]);
+    let problems = tyndall::render::all_problems(&mut app, &document);
+    assert!(problems.is_empty(), "{problems:?}");
+
+    // From here on it is a scene like any other.
+    std::fs::write(&scene, text.replace("\"square\"", "\"table\"")).unwrap();
+    let deadline = Instant::now() + Duration::from_secs(10);
+    while !screen.session.poll() {
+        assert!(Instant::now() < deadline, "the new file is not followed");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    screen.settle();
+    assert!(screen.names().contains(&"table".to_owned()), "{:?}", screen.names());
+    let recent = screen.session.world().resource::<Recent>().0.clone();
+    let whole = |path: &PathBuf| path.canonicalize().unwrap();
+    assert_eq!(recent, [whole(&scene), whole(&square), whole(&screen.scene())]);
+}
+
+#[needs(gpu)]
+#[test]
+fn a_file_that_is_there_is_replaced_when_asked_for_twice_and_data_never() {
+    let mut screen = Screen::new(BALL);
+    let square = screen.file("square.obj", SQUARE);
+    screen.session.open(&[square.clone()]);
+    screen.settle();
+    let taken = screen.file("taken.ron", "()");
+    screen.session.act(Command::SaveAs(taken.clone()));
+    assert_eq!(std::fs::read_to_string(&taken).unwrap(), "()");
+    assert!(screen.told().contains("there is a file already"), "{}", screen.told());
+    screen.session.act(Command::SaveAs(taken.clone()));
+    assert!(std::fs::read_to_string(&taken).unwrap().contains("square.obj"));
+    for _ in 0..2 {
+        screen.session.act(Command::SaveAs(square.clone()));
+    }
+    assert_eq!(std::fs::read_to_string(&square).unwrap(), SQUARE);
+
+    // A scene that has a file is written elsewhere whole, with its edits.
+    let other = screen.scene();
+    screen.session.open(&[other]);
+    screen.settle();
+    screen.set("Phong.shininess", 3.0_f32);
+    let copy = screen.folder.path().join("copy.ron");
+    screen.session.act(Command::SaveAs(copy.clone()));
+    let text = std::fs::read_to_string(&copy).unwrap();
+    assert!(text.contains("shininess: 3") && text.contains("subdivisions: 3"), "{text}");
+    assert_eq!((screen.text().as_str(), screen.session.is_unsaved()), (BALL, false));
+}
+
+#[needs(gpu)]
+#[test]
+fn several_files_lie_over_each_other_and_what_cannot_be_opened_changes_nothing() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    let square = screen.file("square.obj", SQUARE);
+    let broken = screen.file("broken.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+    let gone = screen.folder.path().join("gone.ron");
+    for files in [vec![broken.clone()], vec![square.clone(), broken], vec![gone]] {
+        screen.drop_files(&files);
+        screen.settle();
+        // What was told has opened the log, which covers the lower part of the picture.
+        screen.session.world().resource_mut::<OpenPanels>().log = false;
+        screen.settle();
+        assert!(is_red(screen.colour(0.0, 0.0)), "{files:?}");
+        assert_eq!(screen.names(), ["ball", "eye", "sun"]);
+        let notice = screen.session.shown().notice.clone().unwrap();
+        assert!(notice.starts_with("cannot open") && notice.lines().count() == 2, "{notice}");
+        assert!(notice.lines().all(|line| screen.told().contains(line)), "{notice} {}", screen.told());
+    }
+    // A scene and a mesh: the scene has the camera and the lights.
+    let scene = screen.scene();
+    screen.drop_files(&[scene, square]);
+    screen.settle();
+    assert_eq!(screen.session.shown().notice, None);
+    assert_eq!(screen.names(), ["ball", "eye", "square", "sun"]);
+}
+
+#[needs(gpu)]
+#[test]
+fn nobody_opens_something_else_over_unsaved_edits_unasked() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    screen.set("Phong.shininess", 3.0_f32);
+    let square = screen.file("square.obj", SQUARE);
+    screen.session.open(&[square.clone()]);
+    assert!(screen.names().contains(&"ball".to_owned()));
+    screen.session.act(Command::SaveAndOpen(vec![square.clone()]));
+    assert!(screen.text().contains("shininess: 3"), "{}", screen.text());
+    assert!(screen.names().contains(&"square".to_owned()));
+    // A scene without a file is asked for one first, and then left.
+    let scene = screen.scene();
+    screen.session.act(Command::SaveAndOpen(vec![scene]));
+    assert!(screen.names().contains(&"square".to_owned()));
+    let made = screen.folder.path().join("made.ron");
+    screen.session.act(Command::SaveAs(made.clone()));
+    assert!(made.exists() && screen.names().contains(&"ball".to_owned()));
+    screen.session.open(&[square]);
+    assert!(screen.names().contains(&"square".to_owned()));
+    assert!(screen.session.act(Command::Discard));
 }

@@ -2,7 +2,7 @@
 
 use super::exit::Failure;
 use crate::render;
-use crate::scene::{Orientation, Override, SceneDocument, is_data, scene_of_files};
+use crate::scene::{Orientation, Override, SceneDocument, is_data, scene_of_files, untitled_for};
 use bevy_app::App;
 use clap::Args;
 use glam::Vec3;
@@ -31,9 +31,6 @@ pub(super) struct Input {
     pub text: Option<String>,
 }
 
-/// The name of a scene that is in no file, in messages.
-const UNTITLED: &str = "untitled.ron";
-
 impl Input {
     /// One scene is taken as it is; data, and several files, become a scene.
     pub fn of(files: &[PathBuf], directions: &Directions) -> Result<Self, Failure> {
@@ -50,9 +47,11 @@ impl Input {
             }
             Some(path) => Ok(Self { path: path.clone(), text: None }),
             None => {
-                let text = scene_of_files(files, Path::new(""), &directions.orientation());
+                let path = untitled_for(files);
+                let text =
+                    scene_of_files(files, path.parent().unwrap_or(Path::new("")), &directions.orientation());
                 let text = text.map_err(|error| Failure::Usage(error.to_string()))?;
-                Ok(Self { path: UNTITLED.into(), text: Some(text) })
+                Ok(Self { path, text: Some(text) })
             }
         }
     }

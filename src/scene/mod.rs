@@ -34,7 +34,7 @@ pub use component_file::read_component;
 pub use document::{Override, SceneComponent, SceneDocument, SceneEntity};
 pub use edits::{Conflict, EditError, Edits, SaveError, Side, Version};
 pub use names::nearest;
-pub use of_files::{OfFilesError, Orientation, is_data, scene_of_files};
+pub use of_files::{OfFilesError, Orientation, is_data, scene_of_files, untitled_for};
 pub use problem::{EntityProblems, Place, Problem, Problems, Severity, SourceFile};
 pub use reconcile::{Changes, SceneEntities, reconcile, reconcile_after};
 pub(crate) use reload::{AssetWatch, watch_assets};

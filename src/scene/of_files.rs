@@ -2,6 +2,8 @@
 //!
 //! What comes of it is a text like any other, so that it can be read, edited and saved, and shows how scenes are written.
 
+use super::loader::read_text;
+use super::tokens::tokens;
 use super::write::quoted;
 use crate::sources::{self, Kind};
 use glam::Vec3;
@@ -25,6 +27,21 @@ pub enum OfFilesError {
     /// Up and front do not span a picture.
     #[error("`--up` and `--front` must point in different directions, and not both ways along one line")]
     Directions,
+    /// Only one scene can be shown.
+    #[error("several scenes cannot be shown at once; name one of them, and meshes and volumes beside it")]
+    SeveralScenes,
+    /// A file that is no mesh or volume cannot be read as a scene either.
+    #[error("{message}")]
+    Unreadable {
+        /// Why.
+        message: String,
+    },
+    /// There is nothing that something could be added to.
+    #[error("{}: expected a scene `( entities: {{ … }} )`, which the other files could be added to; name a scene, meshes or volumes", .path.display())]
+    NoEntities {
+        /// The file.
+        path: PathBuf,
+    },
 }
 
 /// Whether a file is opened as data: a mesh or a volume, as opposed to a scene or something that is neither.
@@ -32,15 +49,22 @@ pub fn is_data(path: &Path) -> bool {
     sources::recognise(path).is_some()
 }
 
-/// The text of a scene that shows `files`, each an entity of its own or, if it is a scene, included, as it would stand in a file in
-/// `folder`.
+/// Where the scene that is made for files would stand if it were saved: beside the scene among them, whose paths it takes over, or else in
+/// the folder that the program runs in.
+pub fn untitled_for(files: &[PathBuf]) -> PathBuf {
+    let scene = files.iter().find(|file| !is_data(file));
+    scene.map_or_else(|| PathBuf::from(UNTITLED), |scene| scene.with_file_name(UNTITLED))
+}
+
+/// The text of a scene that shows `files`, each an entity of its own, as it would stand in a file in `folder`. One of them may be a scene
+/// itself, which the others are added to.
 ///
 /// Files that say how they lie in a patient lie so; the camera looks at these from the front, the head up, and stands where everything fills
 /// nine tenths of the picture. A strong light comes from beside it, a weak one from its other side.
 ///
 /// # Errors
 ///
-/// If there is no picture for the directions that are asked for.
+/// If there is no picture for the directions that are asked for, there are several scenes, or one that has no entities.
 pub fn scene_of_files(
     files: &[PathBuf],
     folder: &Path,
@@ -50,18 +74,14 @@ pub fn scene_of_files(
         files.iter().map(|file| (file, sources::recognise(file))).collect();
     let is_patient = kinds.iter().any(|(_, kind)| matches!(kind, Some(Kind::Volume { in_patient: true })));
     let view = Basis::new(orientation, is_patient).ok_or(OfFilesError::Directions)?;
-    let mut text = heading(files);
-    text.push_str("(\n    background: (0.03, 0.03, 0.035),\n");
-    let scenes: Vec<String> = kinds
-        .iter()
-        .filter(|(_, kind)| kind.is_none())
-        .map(|(file, _)| quoted(&relative_to(file, folder)))
-        .collect();
-    if !scenes.is_empty() {
-        _ = writeln!(text, "    include: [{}],", scenes.join(", "));
+    let mut scenes = kinds.iter().filter(|(_, kind)| kind.is_none()).map(|(file, _)| *file);
+    let scene = scenes.next();
+    if scenes.next().is_some() {
+        return Err(OfFilesError::SeveralScenes);
     }
-    text.push_str("    entities: {\n");
+    let mut text = String::new();
     let mut names = BTreeSet::from(RESERVED.map(str::to_owned));
+    let around = scene.map(|scene| Around::read(scene, &mut names)).transpose()?;
     for (file, kind) in &kinds {
         let Some(kind) = kind else { continue };
         let name = quoted(&free_name(file, &mut names));
@@ -78,13 +98,62 @@ pub fn scene_of_files(
             }
         };
     }
-    // Scenes have their own cameras and lights.
-    if scenes.is_empty() {
-        text.push_str(&view.camera_and_lights());
-    }
-    text.push_str("    },\n)\n");
-    Ok(text)
+    Ok(match around {
+        // A scene has its own camera and lights.
+        Some(around) => format!("{}{text}    {}", around.before, around.behind),
+        None => format!(
+            "{}(\n    background: (0.03, 0.03, 0.035),\n    entities: {{\n{text}{}    }},\n)\n",
+            heading(files),
+            view.camera_and_lights()
+        ),
+    })
 }
+
+/// The text of a scene in front of the bracket that closes its entities, and from there on.
+struct Around {
+    before: String,
+    behind: String,
+}
+
+impl Around {
+    /// Adds the names that the scene has to `taken`.
+    fn read(scene: &Path, taken: &mut BTreeSet<String>) -> Result<Self, OfFilesError> {
+        let nothing = || OfFilesError::NoEntities { path: scene.to_owned() };
+        let unreadable = |problem: Box<super::Problem>| OfFilesError::Unreadable { message: problem.message };
+        let file = read_text(scene).map_err(unreadable)?;
+        let text = file.text();
+        let mut open = Vec::new();
+        let mut entities = None;
+        let mut before = [""; 2];
+        for token in tokens(text) {
+            let word = &text[token.clone()];
+            match word {
+                "(" | "[" | "{" => {
+                    if word == "{" && open.len() == 1 && before == ["entities", ":"] {
+                        entities = Some(open.len());
+                    }
+                    open.push(token.start);
+                }
+                ")" | "]" | "}" => {
+                    open.pop();
+                    if entities == Some(open.len()) {
+                        let comma = if matches!(before[1], "," | "{") { "" } else { "," };
+                        let inside = text[..token.start].trim_end();
+                        let before = format!("{inside}{comma}\n");
+                        return Ok(Self { before, behind: text[token.start..].to_owned() });
+                    }
+                }
+                quoted if quoted.starts_with('"') => taken.extend(ron::from_str::<String>(quoted)),
+                _ => {}
+            }
+            before = [before[1], word];
+        }
+        Err(nothing())
+    }
+}
+
+/// What a scene that is in no file is called in messages.
+const UNTITLED: &str = "untitled.ron";
 
 /// Names of what is there beside the files.
 const RESERVED: [&str; 3] = ["camera", "key light", "fill light"];
@@ -199,6 +268,29 @@ mod tests {
         }
         let beside = scene_of_files(&files[1..2], &at("b"), &Orientation::default()).unwrap();
         assert!(beside.contains("File(\"../a.obj\")"), "{beside}");
+    }
+
+    #[test]
+    fn files_are_added_to_a_scene() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        for entities in ["{ \"a\": ( Mesh: Box() ) }", "{ \"a\": ( Mesh: Box() ), /* } */ }", "{}"] {
+            std::fs::write(at("s.ron"), format!("// {{\n( background: (1, 1, 1), entities: {entities}, )\n"))
+                .unwrap();
+            let files = [at("a.obj"), at("s.ron")];
+            assert_eq!(untitled_for(&files), at("untitled.ron"));
+            let text = scene_of_files(&files, folder.path(), &Orientation::default()).unwrap();
+            let name = if entities == "{}" { "a" } else { "a 2" };
+            assert!(text.contains(&format!("\"{name}\": (\n            Mesh: File(\"a.obj\"),")), "{text}");
+            let parsed: Result<ron::Value, _> = ron::from_str(&text);
+            assert!(parsed.is_ok(), "{parsed:?} {text}");
+        }
+        let twice = [at("s.ron"), at("s.ron")];
+        assert_eq!(
+            scene_of_files(&twice, folder.path(), &Orientation::default()),
+            Err(OfFilesError::SeveralScenes)
+        );
     }
 
     #[test]

@@ -106,6 +106,8 @@ impl LiveScene {
 
     fn open_as(app: &mut App, path: &Path, unsaved: Option<String>, overrides: &[Override]) -> Self {
         let watch = Arc::new(FileWatch::new());
+        // What an earlier scene has read is told to this one too.
+        app.world_mut().remove_resource::<AssetWatch>();
         app.insert_resource(AssetWatch(Arc::downgrade(&watch)));
         let mut scene = Self {
             path: path.to_owned(),
@@ -145,17 +147,27 @@ impl LiveScene {
         Ok(())
     }
 
-    /// Writes a scene that is in no file yet, with what was changed of it, into one at `path`, and follows that from here on.
+    /// Writes the scene, with what was changed of it, into a file at `path`, and follows that from here on.
     ///
     /// # Errors
     ///
     /// If an edit cannot be written, the file cannot, or there is a file already.
     pub fn save_as(&mut self, app: &mut App, path: &Path) -> Result<(), SaveError> {
+        if path.exists() {
+            let source = std::io::ErrorKind::AlreadyExists.into();
+            return Err(SaveError::File { path: path.to_owned(), source });
+        }
+        self.save_over(app, path)
+    }
+
+    /// The same, whatever there is at `path`.
+    ///
+    /// # Errors
+    ///
+    /// If an edit cannot be written, or the file cannot.
+    pub fn save_over(&mut self, app: &mut App, path: &Path) -> Result<(), SaveError> {
         let world = app.world_mut();
         let failed = |source| SaveError::File { path: path.to_owned(), source };
-        if path.exists() {
-            return Err(failed(std::io::ErrorKind::AlreadyExists.into()));
-        }
         let text = match world.remove_resource::<Edits>() {
             Some(edits) => {
                 let text = edits.text_for(world, path);

@@ -2,6 +2,7 @@
 
 use bevy_ecs::prelude::Entity;
 use glam::DVec2;
+use std::path::PathBuf;
 
 /// Something that a person asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +34,18 @@ pub enum Command {
     Redo,
     /// To write edits to the files that they are of.
     Save,
+    /// To write the scene into another file, and to follow that; one that is there already is replaced when it is asked for twice.
+    SaveAs(PathBuf),
+    /// To be asked for the file that the scene is to be written into.
+    AskSaveAs,
+    /// To show other files, or to be asked first where edits are not saved: a scene, or meshes, volumes and scenes together.
+    Open(Vec<PathBuf>),
+    /// To be asked for a file to open.
+    AskOpen,
+    /// To save and show other files, if all could be saved.
+    SaveAndOpen(Vec<PathBuf>),
+    /// To show other files, whatever is not saved.
+    DiscardAndOpen(Vec<PathBuf>),
     /// To give the graphics device up and open another.
     ReopenDevice,
     /// To close the window, or to be asked first where edits are not saved.
@@ -46,8 +59,16 @@ pub enum Command {
 impl Command {
     /// Whether it is about what was changed in the scene, or may be lost.
     pub(crate) fn concerns_edits(&self) -> bool {
-        use Command::{Discard, Quit, Redo, Save, SaveAndQuit, Undo};
-        matches!(self, Undo | Redo | Save | Quit | SaveAndQuit | Discard)
+        matches!(self, Self::Undo | Self::Redo) || self.concerns_files()
+    }
+
+    /// Whether it is about the files of the scene, or about leaving them.
+    pub(crate) fn concerns_files(&self) -> bool {
+        use Command::{
+            AskOpen, AskSaveAs, Discard, DiscardAndOpen, Open, Quit, Save, SaveAndOpen, SaveAndQuit, SaveAs,
+        };
+        matches!(self, Save | SaveAs(_) | AskSaveAs | Open(_) | AskOpen | SaveAndOpen(_) | DiscardAndOpen(_))
+            || matches!(self, Quit | SaveAndQuit | Discard)
     }
 }
 

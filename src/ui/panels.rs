@@ -1,8 +1,8 @@
 //! Where everything stands.
 
 use super::{
-    Command, OpenPanels, Shown, conflicts, entities, leaving, log, picture, report, sections, shortcuts,
-    status, toolbar,
+    Command, OpenPanels, Shown, conflicts, entities, leaving, log, opening, picture, report, sections,
+    shortcuts, status, toolbar,
 };
 use bevy_ecs::prelude::*;
 use egui::{CentralPanel, Panel, Rect, Ui};
@@ -46,6 +46,7 @@ pub fn panels(ui: &mut Ui, world: &mut World, shown: &Shown) -> Laid {
     world.get_resource_or_init::<OpenPanels>().set_if_neq(open);
     let centre =
         CentralPanel::no_frame().show(ui, |ui| picture::show(ui, world, shown, open.axes, &mut commands));
+    opening::show(ui, world, &mut commands);
     leaving::show(ui, world, &mut commands);
     Laid { picture: centre.inner, commands }
 }

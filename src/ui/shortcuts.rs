@@ -9,8 +9,15 @@ use egui::{Context, Key, Modifiers};
 pub(super) fn take(context: &Context, world: &mut World, commands: &mut Vec<Command>) {
     let pressed =
         |modifiers: Modifiers, key: Key| context.input_mut(|input| input.consume_key(modifiers, key));
+    // Those with more modifiers first: without, others may be held.
+    if pressed(Modifiers::COMMAND | Modifiers::SHIFT, Key::S) {
+        commands.push(Command::AskSaveAs);
+    }
     if pressed(Modifiers::COMMAND, Key::S) {
         commands.push(Command::Save);
+    }
+    if pressed(Modifiers::COMMAND, Key::O) {
+        commands.push(Command::AskOpen);
     }
     if context.text_edit_focused() {
         return;

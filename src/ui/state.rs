@@ -61,6 +61,10 @@ pub struct Shown {
     pub is_orthographic: bool,
     /// Whether the camera has been moved away from the scene's.
     pub is_free: bool,
+    /// Whether the scene is in no file yet.
+    pub is_untitled: bool,
+    /// Why what was to be opened or written was not, and what to do about it; a line each.
+    pub notice: Option<String>,
     /// Who draws.
     pub adapter: String,
 }
@@ -72,5 +76,6 @@ pub fn init(world: &mut World) {
     world.init_resource::<SceneProblems>();
     world.init_resource::<Totals>();
     world.init_resource::<Log>();
+    world.init_resource::<super::Recent>();
     world.init_resource::<Sections>();
 }

@@ -31,7 +31,7 @@ fn refinement(ui: &mut Ui, shown: &Shown) {
 
 /// Why what is shown may not be the scene.
 fn problems(ui: &mut Ui, world: &mut World, shown: &Shown) {
-    if let Some(failure) = &shown.failure {
+    for failure in shown.notice.iter().chain(&shown.failure) {
         ui.colored_label(colour(ui, Level::Error), first_line(failure)).on_hover_text(failure);
     }
     let problems = world.get_resource_or_init::<SceneProblems>();

@@ -9,9 +9,16 @@ use egui::Ui;
 
 pub(super) fn show(ui: &mut Ui, world: &mut World, shown: &Shown, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
+        let open = ui.button("Open…").on_hover_text(
+            "Show a scene, a mesh, a volume or a folder of DICOM slices (Ctrl+O, or drop files on the window)",
+        );
+        if open.clicked() {
+            commands.push(Command::AskOpen);
+        }
+        ui.separator();
         camera(ui, shown, commands);
         ui.separator();
-        edits(ui, world, commands);
+        edits(ui, world, shown, commands);
         compare(ui, world);
         ui.separator();
         ui.menu_button("Screenshot", |ui| {
@@ -66,7 +73,7 @@ fn camera(ui: &mut Ui, shown: &Shown, commands: &mut Vec<Command>) {
 }
 
 /// What can be done with edits, where the scene can be edited.
-fn edits(ui: &mut Ui, world: &World, commands: &mut Vec<Command>) {
+fn edits(ui: &mut Ui, world: &World, shown: &Shown, commands: &mut Vec<Command>) {
     let Some(edits) = world.get_resource::<Edits>() else { return };
     let steps = [
         ("Undo", edits.next_undo(), Command::Undo, "Take back the change of", "Ctrl+Z"),
@@ -80,7 +87,7 @@ fn edits(ui: &mut Ui, world: &World, commands: &mut Vec<Command>) {
             commands.push(command);
         }
     }
-    let is_unsaved = edits.is_unsaved();
+    let is_unsaved = edits.is_unsaved() || shown.is_untitled;
     let save = ui.add_enabled(is_unsaved, egui::Button::new("Save"));
     let save = save.on_hover_text(
         "Write what was changed to the files that it came from; the rest of them stays as it is (Ctrl+S)",
@@ -88,8 +95,19 @@ fn edits(ui: &mut Ui, world: &World, commands: &mut Vec<Command>) {
     if save.on_disabled_hover_text("All is saved (Ctrl+S)").clicked() {
         commands.push(Command::Save);
     }
+    let save_as = ui.button("Save as…");
+    if save_as
+        .on_hover_text("Write the scene into another file, and go on with that (Ctrl+Shift+S)")
+        .clicked()
+    {
+        commands.push(Command::AskSaveAs);
+    }
     if is_unsaved {
-        ui.weak("not saved").on_hover_text("The scene is shown with changes that its files do not have yet");
+        let tip = match shown.is_untitled {
+            true => "The scene is in no file yet",
+            false => "The scene is shown with changes that its files do not have yet",
+        };
+        ui.weak("not saved").on_hover_text(tip);
     }
     ui.separator();
 }

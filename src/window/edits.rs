@@ -1,28 +1,15 @@
-//! Undo, redo, saving, and leaving with edits that are not saved.
+//! Undo, redo, and saving.
 
 use crate::scene::Edits;
 use crate::ui::edit::{tell, with_edits};
-use crate::ui::{Command, Leaving, Level, Log, OpenPanels};
+use crate::ui::{Command, Level, Log, OpenPanels};
 use bevy_ecs::prelude::World;
 
-/// Does what concerns edits, and says whether the window is to be closed.
-pub(super) fn obey(world: &mut World, command: &Command) -> bool {
-    match command {
-        Command::Undo | Command::Redo => step(world, *command == Command::Undo),
-        Command::Save => drop(save(world)),
-        Command::SaveAndQuit => return save(world),
-        Command::Quit => return may_quit(world),
-        Command::Discard => return true,
-        _ => {}
+/// Does what concerns edits.
+pub(super) fn obey(world: &mut World, command: &Command) {
+    if matches!(command, Command::Undo | Command::Redo) {
+        step(world, *command == Command::Undo);
     }
-    false
-}
-
-/// Whether nothing would be lost; else a person is asked.
-pub(super) fn may_quit(world: &mut World) -> bool {
-    let is_unsaved = is_unsaved(world);
-    world.insert_resource(Leaving(is_unsaved));
-    !is_unsaved
 }
 
 pub(super) fn is_unsaved(world: &World) -> bool {
@@ -37,7 +24,7 @@ fn step(world: &mut World, back: bool) {
 }
 
 /// Whether all is saved.
-fn save(world: &mut World) -> bool {
+pub(super) fn save(world: &mut World) -> bool {
     let Some(saved) = with_edits(world, |edits, world| edits.save(world)) else { return true };
     match saved {
         Ok(files) => {

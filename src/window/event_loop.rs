@@ -4,7 +4,7 @@ use super::memory::Remembered;
 use super::surface::{Next, WindowSurface};
 use super::{Painter, Session, SessionOptions, WindowError};
 use crate::gpu::{Gpu, GpuOptions};
-use crate::ui::{Level, Log, OpenPanels};
+use crate::ui::{Level, Log, OpenPanels, Recent};
 use bevy_app::App;
 use egui_winit::accesskit_winit;
 use glam::UVec2;
@@ -83,8 +83,8 @@ struct Open {
     due: Option<Instant>,
     /// Frames in a row that could not be shown.
     failed: u32,
-    /// Whether the title says that edits are not saved.
-    says_unsaved: bool,
+    /// The title as it was set last.
+    title: String,
 }
 
 impl ApplicationHandler<Wake> for Program {
@@ -180,6 +180,7 @@ impl Open {
         let window = Arc::new(window);
         let (surface, gpu) = WindowSurface::new(window.clone(), events.owned_display_handle(), &options.gpu)?;
         app.insert_resource(gpu.clone()).insert_resource(remembered.panels);
+        app.insert_resource(remembered.recent);
         let mut session = Session::new(app, options.session);
         if let Some(complaint) = complaint {
             log::warn!("{complaint}");
@@ -201,7 +202,7 @@ impl Open {
         window.set_visible(true);
         window.request_redraw();
         let painter = surface.painter(&gpu);
-        Ok(Self { window, surface, painter, gpu, state, session, due: None, failed: 0, says_unsaved: false })
+        Ok(Self { window, surface, painter, gpu, state, session, due: None, failed: 0, title: String::new() })
     }
 
     /// Shows a frame, and says whether it was the last.
@@ -256,11 +257,11 @@ impl Open {
 
     /// Marks the title of a scene with edits that are not saved.
     fn set_title(&mut self) {
-        let is_unsaved = self.session.is_unsaved();
-        if is_unsaved != self.says_unsaved {
-            let mark = if is_unsaved { "* " } else { "" };
-            self.window.set_title(&format!("{mark}{}", title(self.session.scene())));
-            self.says_unsaved = is_unsaved;
+        let mark = if self.session.is_unsaved() { "* " } else { "" };
+        let title = format!("{mark}{}", title(self.session.scene()));
+        if title != self.title {
+            self.window.set_title(&title);
+            self.title = title;
         }
     }
 
@@ -282,6 +283,7 @@ impl Open {
             position: self.window.outer_position().ok().map(|position| (position.x, position.y)),
             maximized,
             panels: *self.session.world().resource::<OpenPanels>(),
+            recent: self.session.world().resource::<Recent>().clone(),
         };
         if let Err(error) = window.save(&path) {
             log::warn!("{}: what the window was like cannot be written: {error}", path.display());

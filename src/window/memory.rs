@@ -1,6 +1,6 @@
 //! What a window was like when it was last closed.
 
-use crate::ui::OpenPanels;
+use crate::ui::{OpenPanels, Recent};
 use etcetera::{AppStrategy, AppStrategyArgs};
 use serde::{Deserialize, Serialize};
 use std::io::{self, ErrorKind};
@@ -18,6 +18,8 @@ pub(super) struct Remembered {
     pub maximized: bool,
     /// Which panels were open.
     pub panels: OpenPanels,
+    /// The files that were opened last.
+    pub recent: Recent,
 }
 
 /// A file with more bytes than this is not one that was written here.
@@ -95,6 +97,7 @@ mod tests {
             position: Some((-40, 30)),
             maximized: false,
             panels: OpenPanels { log: true, ..Default::default() },
+            recent: Recent(vec!["/a/b.ron".into(), "/c".into()]),
         };
         window.save(&path).unwrap();
         assert_eq!(Remembered::load(&path), (window.clone(), None));

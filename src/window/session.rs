@@ -1,9 +1,10 @@
 //! A scene and the panels around it, without a window.
 
 mod draw;
+mod files;
 
 use super::edits;
-use super::files::{self, told};
+use super::files::{problems, told};
 use super::orbit::Orbit;
 use super::pace::Pace;
 use super::stale::Drawn;
@@ -11,8 +12,8 @@ use crate::gpu::Gpu;
 use crate::passes::tonemap::Tonemap;
 use crate::render::replace_device;
 use crate::report::Report;
-use crate::scene::{LiveScene, Problem, Reload};
-use crate::ui::{self, Command, Laid, Level, Log, PictureFile, Shown};
+use crate::scene::{LiveScene, Problem, Reload, Wake};
+use crate::ui::{self, Command, Laid, Leaving, Level, Log, PictureFile, Shown};
 use crate::view::{FreeCamera, Picture, SceneBounds, View, bounds_of};
 use bevy_app::App;
 use bevy_ecs::prelude::*;
@@ -20,6 +21,7 @@ use egui::{FullOutput, RawInput, TextureId, ViewportId};
 use glam::UVec2;
 use std::collections::HashSet;
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// What a session shows.
@@ -62,6 +64,12 @@ pub struct Session {
     has_reloaded: bool,
     /// Devices that were lost.
     lost: usize,
+    /// Whom to wake when files have changed, of whatever scene is shown.
+    wake: Option<Arc<Mutex<Wake>>>,
+    /// What waits for the scene to get a file.
+    then: Leaving,
+    /// The file that is replaced if it is asked for once more.
+    replaceable: Option<PathBuf>,
 }
 
 /// What came of a frame.
@@ -80,8 +88,6 @@ impl Session {
         let SessionOptions { mut scene, camera, screenshots, tell } = options;
         ui::init(app.world_mut());
         scene.allow_edits(&mut app);
-        let folder = scene.path().parent().unwrap_or("".as_ref()).to_owned();
-        app.insert_resource(ui::SceneFolder(folder));
         app.insert_resource(Picture { camera, ..Default::default() });
         let gpu = app.world().resource::<Gpu>();
         let pace = Pace::new(gpu.is_software());
@@ -108,7 +114,11 @@ impl Session {
             frames: 0,
             has_reloaded: false,
             lost: 0,
+            wake: None,
+            then: Leaving::No,
+            replaceable: None,
         };
+        session.follow_scene();
         session.tell_problems();
         session
     }
@@ -176,17 +186,18 @@ impl Session {
 
     /// Whether the window may be closed. Where edits would be lost, the panels ask what is to become of them, and answer by [`Frame::quit`].
     pub fn may_quit(&mut self) -> bool {
-        edits::may_quit(self.app.world_mut())
+        self.may_leave(Leaving::ToClose)
     }
 
     /// Whether the scene is shown with edits that its files do not have yet.
     pub fn is_unsaved(&self) -> bool {
-        edits::is_unsaved(self.app.world())
+        self.scene.is_untitled() || edits::is_unsaved(self.app.world())
     }
 
     /// Has `wake` called whenever [`Self::poll`] has something to do.
-    pub fn on_change(&self, wake: Box<dyn Fn() + Send>) {
-        self.scene.on_change(wake);
+    pub fn on_change(&mut self, wake: Box<dyn Fn() + Send>) {
+        self.wake = Some(Arc::new(Mutex::new(wake)));
+        self.follow_changes();
     }
 
     /// Lays out the panels, does what a person asks for in them, and draws the picture if it is not that of the scene any more. `texture`
@@ -194,20 +205,22 @@ impl Session {
     pub fn frame(&mut self, input: RawInput, texture: TextureId) -> Frame {
         self.frames += 1;
         self.shown.texture = Some(texture);
+        let dropped = self.take_dropped(&input);
         let (output, laid) = self.lay_out(input);
         let size = self.size_of(&laid, output.pixels_per_point);
         let is_editing = laid.commands.iter().any(Command::concerns_edits);
-        let is_saving =
-            laid.commands.iter().any(|command| matches!(command, Command::Save | Command::SaveAndQuit));
-        let quit = self.obey(laid.commands, size);
-        if is_saving {
-            self.scene.was_saved(&mut self.app);
+        let (of_files, commands): (Vec<_>, Vec<_>) =
+            laid.commands.into_iter().partition(Command::concerns_files);
+        self.obey(commands, size);
+        let mut quit = false;
+        for command in of_files {
+            quit |= self.obey_files(command);
         }
         let before = (self.shown.pixels, self.shown.took, self.shown.is_coarse, self.shown.refined);
         let next = self.draw_if_due(size);
         let after = (self.shown.pixels, self.shown.took, self.shown.is_coarse, self.shown.refined);
         // What the panels say of the picture is to be that of this one.
-        let next = if before == after && !is_editing { next } else { Some(Duration::ZERO) };
+        let next = if before == after && !is_editing && !dropped { next } else { Some(Duration::ZERO) };
         let animation =
             output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |root| root.repaint_delay);
         let animation = (animation < Duration::from_secs(3600)).then_some(animation);
@@ -216,7 +229,7 @@ impl Session {
 
     /// Tells of the problems that have been found since the last time.
     fn tell_problems(&mut self) {
-        let (sorted, all) = files::problems(&self.scene, self.app.world());
+        let (sorted, all) = problems(&self.scene, self.app.world());
         let new: Vec<Problem> =
             all.iter().filter(|problem| !self.told.contains(&told(problem).1)).cloned().collect();
         for problem in &new {
@@ -255,9 +268,8 @@ impl Session {
         UVec2::new(pixels(laid.picture.width()), pixels(laid.picture.height()))
     }
 
-    /// Does what was asked for, and says whether the window is to be closed.
-    fn obey(&mut self, commands: Vec<Command>, size: UVec2) -> bool {
-        let mut quit = false;
+    /// Does what was asked for of the picture and the edits.
+    fn obey(&mut self, commands: Vec<Command>, size: UVec2) {
         let world = self.app.world_mut();
         let bounds = world.resource::<SceneBounds>().0;
         let viewpoint = world.resource::<View>().viewpoint;
@@ -293,7 +305,7 @@ impl Session {
                     continue;
                 }
                 _ => {
-                    quit |= edits::obey(world, &command);
+                    edits::obey(world, &command);
                     continue;
                 }
             }
@@ -303,6 +315,5 @@ impl Session {
         world.resource_mut::<FreeCamera>().set_if_neq(free);
         self.shown.is_free = self.orbit.is_some();
         self.shown.is_orthographic = self.orbit.unwrap_or(Orbit::of(&viewpoint)).is_orthographic();
-        quit
     }
 }

@@ -28,14 +28,16 @@ impl Edits {
         Ok(texts.map(|file| (file.before.path().to_owned(), file.text)).collect())
     }
 
-    /// The text of a scene that is in no file yet, with its edits, as it would stand in a file at `path`: what it names by relative paths
+    /// The text of the scene, with its edits, as it would stand in a file at `path`: what it names by relative paths
     /// is named as seen from there.
     ///
     /// # Errors
     ///
     /// If an edit cannot be written.
     pub fn text_for(&self, world: &mut World, path: &Path) -> Result<String, EditError> {
-        let mut text = self.preview(world)?.remove(&self.path).or(self.unsaved.clone()).unwrap_or_default();
+        let as_read = || self.base.source(&self.path).map(|file| file.text().to_owned());
+        let text = self.preview(world)?.remove(&self.path).or(self.unsaved.clone());
+        let mut text = text.or_else(as_read).unwrap_or_default();
         let folder = folder_of(path);
         for component in self.document.entities.iter().flat_map(|entity| entity.components.iter()) {
             let value = component.value.as_any();
@@ -45,6 +47,11 @@ impl Edits {
                 _ => continue,
             };
             text = text.replace(&quoted(named.written()), &quoted(&relative_to(named.path(), &folder)));
+        }
+        // Scenes that are included, and components in files of their own.
+        let before = folder_of(&self.path);
+        for file in self.base.trail().keys().filter(|file| **file != self.path) {
+            text = text.replace(&quoted(&relative_to(file, &before)), &quoted(&relative_to(file, &folder)));
         }
         Ok(text)
     }
