@@ -28,6 +28,8 @@ pub(super) struct Grid {
     anatomical: bool,
     /// The centre of the first voxel of the file, mm, and what that means; where the file says so.
     place: Option<(DVec3, Space)>,
+    /// From one voxel to the next along the third axis, where that leans over against how it is drawn.
+    leaning: Option<DVec3>,
 }
 
 impl Grid {
@@ -57,7 +59,7 @@ impl Grid {
         let spacing = DVec3::new(given(0), given(1), given(2)).as_vec3();
         check_spacing(spacing).map_err(layout)?;
         checked_bytes(size, bytes).map_err(layout)?;
-        let grid = Self { size, axes: completed(axes), anatomical, place: None };
+        let grid = Self { size, axes: completed(axes), anatomical, place: None, leaning: None };
         let [x, y, z] = grid.axes.map(DVec3::normalize);
         let spanned = x.cross(y).dot(z).abs();
         if spanned.is_nan() || spanned <= FLAT {
@@ -84,6 +86,12 @@ impl Grid {
             field: "origin".to_owned(),
             problem: format!("{origin} is not finite; correct the header"),
         })
+    }
+
+    /// The same with layers that are stacked at a slant: upright where they are drawn by themselves, but `step` apart, mm, in
+    /// the world of the file.
+    pub fn leaning(self, step: DVec3) -> Self {
+        Self { leaning: Some(step), ..self }
     }
 
     /// How many samples there are.
@@ -134,10 +142,11 @@ impl Grid {
     fn frame(&self, turn: &Turn, origin: DVec3, space: Space) -> Frame {
         let mut frame = Frame { origin, directions: [DVec3::ZERO; 3], space };
         for (world, &axis) in turn.from.iter().enumerate() {
-            let unit = self.axes[axis].normalize();
-            frame.directions[world] = if turn.reversed[world] { -unit } else { unit };
+            let step = self.leaning.filter(|_| axis == 2).unwrap_or(self.axes[axis]);
+            let along = step / self.axes[axis].length();
+            frame.directions[world] = if turn.reversed[world] { -along } else { along };
             if turn.reversed[world] {
-                frame.origin += self.axes[axis] * f64::from(self.size[axis] - 1);
+                frame.origin += step * f64::from(self.size[axis] - 1);
             }
         }
         frame

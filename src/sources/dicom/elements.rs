@@ -8,10 +8,15 @@ use std::{
 
 use flate2::bufread::DeflateDecoder;
 
-use super::{MAGIC, MAGIC_AT, SourceError, file};
+use super::{
+    MAGIC, MAGIC_AT, SourceError, file,
+    syntax::Syntax,
+    tags::{self, is_pixels, is_sequence},
+    values::text,
+};
 
 /// The longest value that is kept, in bytes.
-const MAX_VALUE: u64 = 1 << 16;
+const MAX_VALUE: u64 = 1 << 20;
 
 /// How deep sequences may lie in each other.
 const MAX_DEPTH: usize = 32;
@@ -19,44 +24,11 @@ const MAX_DEPTH: usize = 32;
 /// The length of what ends with a mark of its own.
 const UNDEFINED: u32 = u32::MAX;
 
-/// How the file is written, by its UID.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Syntax {
-    /// What the file calls it.
-    pub uid: String,
-    /// Whether the most significant byte comes first.
-    pub big_endian: bool,
-    /// Whether elements do not say their type.
-    implicit: bool,
-    /// Whether all behind the first group is one deflate stream.
-    pub deflated: bool,
-}
+/// The beginning of an item, and the group of all marks.
+pub(super) const ITEM: u32 = 0xfffe_e000;
+const MARKS: u32 = 0xfffe;
 
-impl Syntax {
-    fn of(uid: &str) -> Self {
-        let is = |last: &str| uid.strip_prefix("1.2.840.10008.1.2") == Some(last);
-        Self { uid: uid.to_owned(), big_endian: is(".2"), implicit: is(""), deflated: is(".1.99") }
-    }
-
-    /// Whether pixels are coded in runs of equal bytes.
-    pub fn is_rle(&self) -> bool {
-        self.uid == "1.2.840.10008.1.2.5"
-    }
-
-    /// The compression of pixels that are not read; `None` for those that are.
-    pub fn compression(&self) -> Option<&str> {
-        match self.uid.strip_prefix("1.2.840.10008.1.2")? {
-            "" | ".1" | ".1.99" | ".2" | ".5" => None,
-            ".4.50" | ".4.51" => Some("JPEG"),
-            ".4.57" | ".4.70" => Some("lossless JPEG"),
-            ".4.80" | ".4.81" => Some("JPEG-LS"),
-            ".4.90" | ".4.91" | ".4.92" | ".4.93" => Some("JPEG 2000"),
-            ".4.201" | ".4.202" | ".4.203" => Some("high-throughput JPEG 2000"),
-            ".4.110" | ".4.111" | ".4.112" => Some("JPEG XL"),
-            _ => Some("a compression"),
-        }
-    }
-}
+const CUT_OFF: &str = "the file ends within an element; it is cut off";
 
 /// One element.
 #[derive(Debug)]
@@ -67,10 +39,19 @@ pub(super) struct Element {
     pub vr: [u8; 2],
     /// Bytes of its value; `None` if it ends with a mark.
     pub length: Option<u32>,
-    /// The outermost sequence that it is in.
-    pub root: Option<u32>,
+    /// The sequence that it is in.
+    pub parent: Option<u32>,
+    /// The outermost of all that it is in, and which of its items, counted from 0.
+    pub root: Option<(u32, usize)>,
     /// Its value; empty for pixels, which are next to be read.
     pub value: Vec<u8>,
+}
+
+impl Element {
+    #[cfg(test)]
+    pub fn of(tag: u32, vr: &[u8; 2], value: &[u8]) -> Self {
+        Self { tag, vr: *vr, length: None, parent: None, root: None, value: value.to_owned() }
+    }
 }
 
 /// A sequence or an item that has begun.
@@ -82,6 +63,8 @@ struct Open {
     outside_implicit: bool,
     /// Whether its items are bytes, no elements.
     is_bytes: bool,
+    /// Items of it that have begun.
+    items: usize,
 }
 
 /// The elements of a file.
@@ -109,25 +92,23 @@ impl Elements {
             reader: Box::new(BufReader::new(file)),
             ahead: Vec::new(),
             position: start,
-            syntax: Syntax::of("1.2.840.10008.1.2.1"),
+            syntax: Syntax::explicit(),
             open: Vec::new(),
         };
         let mut uid = None;
         elements.look_ahead()?;
         while elements.ahead.get(..2) == Some(&[2, 0]) {
+            elements.syntax.implicit = Syntax::explicit().seen(&elements.ahead).implicit;
             let begin = elements.take(4)?;
             let (_, length) = elements.type_and_length()?;
             if begin == [2, 0, 0x10, 0] && u64::from(length) <= MAX_VALUE {
-                uid = Some(super::header::text(&elements.take(length.into())?));
+                uid = Some(text(&elements.take(length.into())?));
             } else {
                 elements.skip(length.into())?;
             }
             elements.look_ahead()?;
         }
-        // Files of before the first group existed write types or not: letters stand where the type would.
-        let says_types = elements.ahead.get(4..6).is_some_and(|vr| vr.iter().all(u8::is_ascii_uppercase));
-        let guess = if says_types { "1.2.840.10008.1.2.1" } else { "1.2.840.10008.1.2" };
-        elements.syntax = Syntax::of(uid.as_deref().unwrap_or(guess));
+        elements.syntax = uid.map_or(Syntax::explicit(), |uid| Syntax::of(&uid)).seen(&elements.ahead);
         let ahead = Cursor::new(std::mem::take(&mut elements.ahead));
         let rest = std::mem::replace(&mut elements.reader, Box::new(io::empty()));
         elements.reader = Box::new(ahead.chain(rest));
@@ -145,8 +126,8 @@ impl Elements {
         Ok(head.get(MAGIC_AT..) == Some(MAGIC))
     }
 
-    /// The next element that is `wanted`, or the pixels; `None` at the end.
-    pub fn next(&mut self, wanted: impl Fn(u32) -> bool) -> Result<Option<Element>, SourceError> {
+    /// The next element that is read here, or the pixels; `None` at the end.
+    pub fn next(&mut self) -> Result<Option<Element>, SourceError> {
         loop {
             while let Some(open) = self.open.pop_if(|open| open.end.is_some_and(|end| self.position >= end)) {
                 self.syntax.implicit = open.outside_implicit;
@@ -154,37 +135,48 @@ impl Elements {
             let begin = self.take(4)?;
             let &[a, b, c, d] = begin.as_slice() else { return Ok(None) };
             let tag = u32::from(self.u16([a, b])) << 16 | u32::from(self.u16([c, d]));
-            if tag >> 16 == 0xfffe {
+            if tag >> 16 == MARKS {
                 self.mark(tag)?;
                 continue;
             }
             let (vr, length) = self.type_and_length()?;
-            let root = self.open.first().map(|open| open.tag);
-            let element = |value, length| Some(Element { tag, vr, length, root, value });
-            if matches!(tag, 0x7fe0_0008..=0x7fe0_0010) && self.open.is_empty() {
-                return Ok(element(Vec::new(), (length != UNDEFINED).then_some(length)));
+            if is_pixels(tag) && self.open.is_empty() {
+                let length = (length != UNDEFINED).then_some(length);
+                return Ok(Some(Element { tag, vr, length, parent: None, root: None, value: Vec::new() }));
             }
-            let is_sequence = length == UNDEFINED || is_of_frames(tag);
-            if is_sequence {
+            if length == UNDEFINED || is_sequence(tag) {
+                let element = self.element(tag, vr, length, Vec::new());
                 self.push(tag, length, matches!(&vr, b"OB" | b"OW"))?;
                 // Of unknown type, but of undefined length: a sequence that lost its type, and those within with it.
                 self.syntax.implicit |= &vr == b"UN";
-            } else if wanted(tag) && u64::from(length) <= MAX_VALUE {
+                if matches!(tag, tags::MODALITY_LUT | tags::DIRECTORY) {
+                    return Ok(Some(element));
+                }
+            } else if tags::name(tag).is_some() {
+                if u64::from(length) > MAX_VALUE {
+                    return Err(self.error(&format!("{} has {length} bytes", tags::called(tag))));
+                }
                 let value = self.take(length.into())?;
                 if value.len() < length as usize {
-                    return Err(self.error("the file ends within an element; it is cut off"));
+                    return Err(self.error(CUT_OFF));
                 }
-                return Ok(element(value, Some(length)));
+                return Ok(Some(self.element(tag, vr, length, value)));
             } else {
                 self.skip(length.into())?;
             }
         }
     }
 
+    fn element(&self, tag: u32, vr: [u8; 2], length: u32, value: Vec<u8>) -> Element {
+        let parent = self.open.iter().rev().map(|open| open.tag).find(|tag| *tag != ITEM);
+        let root = self.open.first().map(|open| (open.tag, open.items.saturating_sub(1)));
+        Element { tag, vr, length: Some(length), parent, root, value }
+    }
+
     /// Follows the beginning of an item or the end of an item or a sequence.
     fn mark(&mut self, tag: u32) -> Result<(), SourceError> {
         let length = self.u32()?;
-        if tag != 0xfffe_e000 {
+        if tag != ITEM {
             while let Some(open) = self.open.pop() {
                 self.syntax.implicit = open.outside_implicit;
                 if open.end.is_none() {
@@ -193,8 +185,11 @@ impl Elements {
             }
             return Ok(());
         }
-        if self.open.last().is_some_and(|open| open.is_bytes) && length != UNDEFINED {
-            return self.skip(length.into());
+        if let Some(sequence) = self.open.last_mut() {
+            sequence.items += 1;
+            if sequence.is_bytes && length != UNDEFINED {
+                return self.skip(length.into());
+            }
         }
         self.push(tag, length, false)
     }
@@ -204,7 +199,7 @@ impl Elements {
             return Err(self.error("sequences lie too deep in each other; the file is damaged"));
         }
         let end = (length != UNDEFINED).then(|| self.position + u64::from(length));
-        self.open.push(Open { tag, end, outside_implicit: self.syntax.implicit, is_bytes });
+        self.open.push(Open { tag, end, outside_implicit: self.syntax.implicit, is_bytes, items: 0 });
         Ok(())
     }
 
@@ -213,29 +208,13 @@ impl Elements {
             return Ok((*b"  ", self.u32()?));
         }
         let &[a, b, c, d] = self.take(4)?.as_slice() else {
-            return Err(self.error("the file ends within an element; it is cut off"));
+            return Err(self.error(CUT_OFF));
         };
         let vr = [a, b];
         if !vr.iter().all(u8::is_ascii_uppercase) {
             return Err(self.error("expected the two letters of a type; the file is damaged"));
         }
-        let is_long = matches!(
-            &vr,
-            b"OB"
-                | b"OD"
-                | b"OF"
-                | b"OL"
-                | b"OV"
-                | b"OW"
-                | b"SQ"
-                | b"SV"
-                | b"UC"
-                | b"UN"
-                | b"UR"
-                | b"UT"
-                | b"UV"
-        );
-        Ok((vr, if is_long { self.u32()? } else { self.u16([c, d]).into() }))
+        Ok((vr, if is_long(&vr) { self.u32()? } else { self.u16([c, d]).into() }))
     }
 
     /// Two bytes as the file writes numbers.
@@ -246,8 +225,7 @@ impl Elements {
     /// The next four bytes as a number.
     pub fn u32(&mut self) -> Result<u32, SourceError> {
         let bytes = self.take(4)?;
-        let bytes = <[u8; 4]>::try_from(bytes.as_slice())
-            .map_err(|_| self.error("the file ends within an element; it is cut off"))?;
+        let bytes = <[u8; 4]>::try_from(bytes.as_slice()).map_err(|_| self.error(CUT_OFF))?;
         Ok(if self.syntax.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
     }
 
@@ -273,9 +251,8 @@ impl Elements {
         let from_ahead = self.ahead.len().min(usize::try_from(bytes).unwrap_or(usize::MAX));
         self.ahead.drain(..from_ahead);
         let rest = (&mut self.reader).take(bytes - from_ahead as u64);
-        let skipped =
-            io::copy(&mut { rest }, &mut io::sink()).map_err(|cause| file::io_error(&self.path, cause))?;
-        let skipped = skipped + from_ahead as u64;
+        let skipped = io::copy(&mut { rest }, &mut io::sink());
+        let skipped = skipped.map_err(|cause| file::io_error(&self.path, cause))? + from_ahead as u64;
         self.position += skipped;
         if skipped < bytes {
             return Err(self.error("an element is longer than the file; it is cut off"));
@@ -293,7 +270,10 @@ impl Elements {
     }
 }
 
-/// The sequences of a multi-frame file that say where its frames are.
-fn is_of_frames(tag: u32) -> bool {
-    matches!(tag, 0x5200_9229 | 0x5200_9230 | 0x0028_9110 | 0x0020_9113 | 0x0020_9116 | 0x0028_9145)
+/// Whether elements of this type say their length in 32 bits.
+pub(super) fn is_long(vr: &[u8; 2]) -> bool {
+    matches!(
+        vr,
+        b"OB" | b"OD" | b"OF" | b"OL" | b"OV" | b"OW" | b"SQ" | b"SV" | b"UC" | b"UN" | b"UR" | b"UT" | b"UV"
+    )
 }

@@ -1,62 +1,72 @@
-//! What the elements of a DICOM file say of its frames.
+//! What the elements of a DICOM file say of it and of its frames.
 
 use std::path::Path;
 
-use glam::DVec3;
-
 use super::{
     SourceError,
-    elements::{Element, Elements, Syntax},
+    attributes::{Attributes, always_matters, pair},
+    elements::{Element, Elements},
+    image::Image,
+    palette::Palette,
+    segments::Segments,
+    syntax::Syntax,
+    tags::{self, is_pixels},
+    values::{Unreadable, numbers, shorts, text, whole},
 };
 
 /// Frames of one file whose places are kept.
-const MAX_FRAMES: usize = 1 << 16;
+pub(super) const MAX_FRAMES: usize = 1 << 16;
+
+/// Elements of one file that could not be understood and are kept to be told.
+const MAX_UNREADABLE: usize = 8;
 
 /// What a volume needs to know of a file.
 #[derive(Debug, Clone)]
 pub(super) struct Header {
     /// How the file is written.
     pub syntax: Syntax,
-    /// Pixels along y.
-    pub rows: u16,
-    /// Pixels along x.
-    pub columns: u16,
+    /// How its pixels are stored.
+    pub image: Image,
     /// Images in the file.
-    pub frames: u64,
-    /// Bits from one number to the next.
-    pub bits: u16,
-    /// Bits that count, and the place of the highest.
-    pub stored_bits: u16,
-    /// The place of the highest bit that counts.
-    pub high_bit: u16,
-    /// Whether it is the sign.
-    pub signed: bool,
-    /// Numbers a pixel.
-    channels: u16,
-    /// What the numbers mean.
-    photometric: String,
-    /// Distance of pixel centres along y and x, mm.
-    pub spacing: Option<[f64; 2]>,
-    /// Distance of slices by what the file says, mm.
-    pub between: Option<f64>,
-    /// How thick a slice is, mm.
-    pub thickness: Option<f64>,
-    /// The directions in which columns and rows count, in the patient: left, posterior, superior.
-    pub orientation: Option<[DVec3; 2]>,
-    /// Where the first pixel of each frame is, mm.
-    pub positions: Vec<DVec3>,
-    /// Slope of the values: one for all frames or one for each.
-    pub slopes: Vec<f64>,
-    /// Intercept of the values, likewise.
-    pub intercepts: Vec<f64>,
-    /// The series that it belongs to.
+    pub frames: usize,
+    /// What is said of all frames.
+    pub all: Attributes,
+    /// What is said of the first detector that the frames come from.
+    detector: Attributes,
+    /// What is said of each, as far as it is.
+    per_frame: Vec<Attributes>,
+    /// Distance of pixel centres on the detector or the film, mm, and which.
+    pub other_spacing: Option<([f64; 2], u32)>,
+    /// How much higher a pixel is than wide: two numbers of any unit.
+    pub aspect: Option<[f64; 2]>,
+    /// Places of the frames along their normal, mm.
+    pub offsets: Vec<f64>,
+    /// The slice that each frame is of, counted from 1.
+    pub slice_vector: Vec<u16>,
+    /// What a dose is multiplied by.
+    dose_scaling: Option<f64>,
+    /// Where the slice says it is along its normal, mm.
+    pub location: Option<f64>,
+    /// Colours of the values.
+    pub palette: Palette,
+    /// Parts of the body that frames are masks of.
+    pub segments: Segments,
+    /// The series that it belongs to: its UID, its number and what people call it.
     pub series: String,
+    /// The number of the series.
+    pub series_number: String,
     /// What people call it.
     pub description: String,
-    /// The number in the series.
-    pub instance: i64,
-    /// Whether pixels are 32- or 64-bit floats.
-    pub is_float: bool,
+    /// CT, MR, …
+    pub modality: String,
+    /// The number of the acquisition, and the number in the series.
+    pub number: [i64; 2],
+    /// Whether a table changes its values, which is not applied.
+    pub has_modality_table: bool,
+    /// What could not be understood and may not matter.
+    pub unreadable: Vec<Unreadable>,
+    /// Where frames begin, where the file has a table of it.
+    pub extended_offsets: Vec<u8>,
 }
 
 impl Header {
@@ -69,13 +79,18 @@ impl Header {
     pub fn read_up_to_pixels(path: &Path) -> Result<(Self, Elements, Element), SourceError> {
         let mut elements = Elements::open(path)?;
         let mut header = Self::empty(elements.syntax.clone());
-        while let Some(element) = elements.next(is_wanted)? {
-            if matches!(element.tag, 0x7fe0_0008..=0x7fe0_0010) {
-                header.is_float = element.tag != 0x7fe0_0010;
-                header.check(path)?;
+        while let Some(element) = elements.next()? {
+            if is_pixels(element.tag) {
+                header.image.is_float = element.tag != tags::PIXELS;
+                header.image.complete(path)?;
+                header.check_frames(path)?;
                 return Ok((header, elements, element));
             }
-            header.element(&element, &elements);
+            match header.element(&element) {
+                Err(problem) if always_matters(problem.tag) => return Err(field(path, &problem)),
+                Err(problem) if header.unreadable.len() < MAX_UNREADABLE => header.unreadable.push(problem),
+                _ => {}
+            }
         }
         Err(unsupported(path, "a DICOM file without pixels", "name one with an image in it"))
     }
@@ -83,140 +98,147 @@ impl Header {
     fn empty(syntax: Syntax) -> Self {
         Self {
             syntax,
-            rows: 0,
-            columns: 0,
+            image: Image::default(),
             frames: 1,
-            bits: 0,
-            stored_bits: 0,
-            high_bit: 0,
-            signed: false,
-            channels: 1,
-            photometric: String::new(),
-            spacing: None,
-            between: None,
-            thickness: None,
-            orientation: None,
-            positions: Vec::new(),
-            slopes: Vec::new(),
-            intercepts: Vec::new(),
+            all: Attributes::default(),
+            detector: Attributes::default(),
+            per_frame: Vec::new(),
+            other_spacing: None,
+            aspect: None,
+            offsets: Vec::new(),
+            slice_vector: Vec::new(),
+            dose_scaling: None,
+            location: None,
+            palette: Palette::default(),
+            segments: Segments::default(),
             series: String::new(),
+            series_number: String::new(),
             description: String::new(),
-            instance: 0,
-            is_float: false,
+            modality: String::new(),
+            number: [0; 2],
+            has_modality_table: false,
+            unreadable: Vec::new(),
+            extended_offsets: Vec::new(),
         }
     }
 
-    fn element(&mut self, element: &Element, elements: &Elements) {
-        // Other sequences tell of other images.
-        if !matches!(element.root, None | Some(0x5200_9229 | 0x5200_9230)) {
-            return;
+    fn element(&mut self, element: &Element) -> Result<(), Unreadable> {
+        let big = self.syntax.big_endian;
+        match (element.root, element.parent) {
+            (None, _) => self.of_file(element),
+            (Some((tags::SHARED_GROUPS, _)), Some(parent)) if is_of_frames(parent) => {
+                self.all.element(element, big)
+            }
+            (Some((tags::FRAME_GROUPS, frame)), Some(parent))
+                if is_of_frames(parent) && frame < MAX_FRAMES =>
+            {
+                if self.per_frame.len() <= frame {
+                    self.per_frame.resize(frame + 1, Attributes::default());
+                }
+                self.per_frame[frame].element(element, big)
+            }
+            (Some((tags::DETECTOR, 0)), Some(tags::DETECTOR)) => self.detector.element(element, big),
+            (Some((tags::SEGMENTS, item)), Some(tags::SEGMENTS)) => self.segments.element(item, element, big),
+            // Other sequences tell of other images.
+            _ => Ok(()),
         }
+    }
+
+    fn of_file(&mut self, element: &Element) -> Result<(), Unreadable> {
+        let big = self.syntax.big_endian;
         let value = &element.value;
-        let short = || value.first_chunk::<2>().map_or(0, |bytes| elements.u16(*bytes));
-        let numbers = || numbers(value);
-        let first = || numbers().first().copied();
+        let text = || text(value);
         match element.tag {
-            0x0008_103e => self.description = text(value),
-            0x0018_0050 => self.thickness = first(),
-            0x0018_0088 => self.between = first(),
+            tags::DESCRIPTION => self.description = text(),
+            tags::SERIES => self.series = text(),
+            tags::SERIES_NUMBER => self.series_number = text(),
+            tags::MODALITY => self.modality = text(),
+            tags::ACQUISITION => self.number[0] = whole(element, big)?.unwrap_or(0),
+            tags::INSTANCE => self.number[1] = whole(element, big)?.unwrap_or(0),
             // The distance on the detector, where that in the patient is not known.
-            0x0018_1164 => self.spacing = self.spacing.or(numbers().try_into().ok()),
-            0x0020_000e => self.series = text(value),
-            0x0020_0013 => self.instance = text(value).parse().unwrap_or(0),
-            0x0020_0032 if self.positions.len() < MAX_FRAMES => {
-                self.positions.extend(<[f64; 3]>::try_from(numbers()).map(DVec3::from).ok());
+            tags::IMAGER_SPACING => self.other_spacing = pair(element, big)?.map(|pair| (pair, element.tag)),
+            tags::SCANNED_SPACING => {
+                let scanned = pair(element, big)?.map(|pair| (pair, element.tag));
+                self.other_spacing = self.other_spacing.or(scanned);
             }
-            0x0020_0037 if self.orientation.is_none() => {
-                self.orientation = <[f64; 6]>::try_from(numbers())
-                    .ok()
-                    .map(|[a, b, c, d, e, f]| [DVec3::new(a, b, c), DVec3::new(d, e, f)]);
+            tags::ASPECT => self.aspect = pair(element, big)?,
+            tags::SLICE_LOCATION => {
+                self.location = numbers(element, big)?.and_then(|all| all.first().copied())
             }
-            0x0028_0002 => self.channels = short(),
-            0x0028_0004 => self.photometric = text(value),
-            0x0028_0008 => self.frames = text(value).parse().unwrap_or(0),
-            0x0028_0010 => self.rows = short(),
-            0x0028_0011 => self.columns = short(),
-            0x0028_0030 => self.spacing = numbers().try_into().ok().or(self.spacing),
-            0x0028_0100 => self.bits = short(),
-            0x0028_0101 => self.stored_bits = short(),
-            0x0028_0102 => self.high_bit = short(),
-            0x0028_0103 => self.signed = short() == 1,
-            0x0028_1052 if self.intercepts.len() < MAX_FRAMES => self.intercepts.extend(first()),
-            0x0028_1053 if self.slopes.len() < MAX_FRAMES => self.slopes.extend(first()),
+            tags::FRAMES => self.frames = usize::try_from(whole(element, big)?.unwrap_or(1)).unwrap_or(0),
+            tags::OFFSETS => self.offsets = numbers(element, big)?.unwrap_or_default(),
+            tags::SLICE_VECTOR => self.slice_vector = shorts(value, big),
+            tags::DOSE_SCALING => {
+                self.dose_scaling = numbers(element, big)?.and_then(|all| all.first().copied());
+            }
+            tags::MODALITY_LUT => self.has_modality_table = true,
+            tags::EXTENDED_OFFSETS => self.extended_offsets = value.clone(),
+            tags::SEGMENTATION | tags::GREATEST_FRACTION => self.segments.of_file(element, big),
+            tags::RED_LAYOUT..=tags::BLUE => self.palette.element(element, big),
+            tags::CHANNELS..=tags::COLUMNS | tags::BITS..=tags::SIGNED => self.image.element(element, big),
             _ => {}
         }
+        self.all.element(element, big)
     }
 
-    /// Refuses what is no image of one number a pixel.
-    fn check(&self, path: &Path) -> Result<(), SourceError> {
-        if self.channels != 1 || self.photometric == "PALETTE COLOR" {
-            let found = format!("its pixels are colours ({})", self.photometric);
-            return Err(unsupported(path, &found, "only images of one number a pixel make a volume"));
+    fn check_frames(&self, path: &Path) -> Result<(), SourceError> {
+        if (1..=MAX_FRAMES).contains(&self.frames) {
+            return Ok(());
         }
-        let is_known =
-            if self.is_float { [32, 64].contains(&self.bits) } else { [8, 16, 32].contains(&self.bits) };
-        if !is_known {
-            let found = format!("its pixels have {} bits", self.bits);
-            return Err(unsupported(path, &found, "convert them to 8, 16 or 32 bits"));
+        Err(SourceError::Field {
+            path: path.to_owned(),
+            field: tags::called(tags::FRAMES),
+            problem: format!("{} frames; expected 1 to {MAX_FRAMES}", self.frames),
+        })
+    }
+
+    /// What is known of a frame.
+    pub fn frame(&self, frame: usize) -> Attributes {
+        let all = self.all.or(&self.detector);
+        match self.per_frame.get(frame) {
+            Some(own) => own.or(&all),
+            None => all,
         }
-        if !self.is_float
-            && (self.stored_bits == 0
-                || self.stored_bits > self.bits
-                || self.high_bit >= self.bits
-                || self.high_bit + 1 < self.stored_bits)
-        {
-            return Err(SourceError::Field {
-                path: path.to_owned(),
-                field: "BitsStored, HighBit".to_owned(),
-                problem: format!(
-                    "{} bits up to bit {} of {}; the header is damaged",
-                    self.stored_bits, self.high_bit, self.bits
-                ),
-            });
-        }
-        Ok(())
+    }
+
+    /// Whether each frame says for itself where it is.
+    pub fn places_each_frame(&self) -> bool {
+        self.per_frame.len() >= self.frames
+            && self.per_frame[..self.frames].iter().all(|frame| frame.position.is_some())
     }
 
     /// Slope and intercept of a frame.
     pub fn scale(&self, frame: usize) -> [f64; 2] {
-        let of = |all: &[f64], otherwise: f64| all.get(frame).or(all.last()).copied().unwrap_or(otherwise);
-        [of(&self.slopes, 1.0), of(&self.intercepts, 0.0)]
+        let attributes = self.frame(frame);
+        let slope = self.dose_scaling.or(attributes.slope).filter(|slope| *slope != 0.0);
+        [slope.unwrap_or(1.0), attributes.intercept.unwrap_or(0.0)]
+    }
+
+    /// Refuses to go on without an element that is there and cannot be understood.
+    pub fn needs(&self, path: &Path, tags: &[u32]) -> Result<(), SourceError> {
+        match self.unreadable.iter().find(|problem| tags.contains(&problem.tag)) {
+            Some(problem) => Err(field(path, problem)),
+            None => Ok(()),
+        }
     }
 }
 
-fn is_wanted(tag: u32) -> bool {
+/// The sequences that tell of frames.
+fn is_of_frames(parent: u32) -> bool {
     matches!(
-        tag,
-        0x0008_103e
-            | 0x0018_0050
-            | 0x0018_0088
-            | 0x0018_1164
-            | 0x0020_000e
-            | 0x0020_0013
-            | 0x0020_0032
-            | 0x0020_0037
-            | 0x0028_0002
-            | 0x0028_0004
-            | 0x0028_0008
-            | 0x0028_0010
-            | 0x0028_0011
-            | 0x0028_0030
-            | 0x0028_0100..=0x0028_0103 | 0x0028_1052 | 0x0028_1053
+        parent,
+        tags::FRAME_CONTENT
+            | tags::PLANE_POSITION
+            | tags::PLANE_ORIENTATION
+            | tags::PIXEL_MEASURES
+            | tags::FRAME_VOI
+            | tags::PIXEL_VALUES
+            | tags::SEGMENT_OF_FRAME
     )
 }
 
-/// A value as text, without what pads it.
-pub(super) fn text(value: &[u8]) -> String {
-    String::from_utf8_lossy(value).trim_matches([' ', '\0']).to_owned()
-}
-
-/// Decimal numbers between backslashes; none if one of them is not finite.
-fn numbers(value: &[u8]) -> Vec<f64> {
-    let numbers = text(value)
-        .split('\\')
-        .map(|number| number.trim().parse().ok().filter(|n: &f64| n.is_finite()))
-        .collect();
-    Option::<Vec<f64>>::unwrap_or_default(numbers)
+fn field(path: &Path, problem: &Unreadable) -> SourceError {
+    SourceError::Field { path: path.to_owned(), field: problem.field(), problem: problem.problem.clone() }
 }
 
 /// The error for what is no image that makes a volume.

@@ -3,50 +3,118 @@
 use std::{io::Cursor, path::Path};
 
 use super::{
-    SourceError,
+    SourceError, colour,
     elements::{Element, Elements},
+    encapsulated,
     header::{Header, unsupported},
+    image::{Image, Kind},
+    syntax::Codec,
 };
 use crate::sources::{
-    pick::Pick,
-    pieces::append,
+    pick::Pick, pieces,
     stored::{Stored, StoredFormat},
     stream::{Packing, SampleStream, Surplus, mend_by_header},
     volume::{Endian, checked_bytes},
 };
 
-/// The beginning and the end of a run of items.
-const ITEM: u32 = 0xfffe_e000;
-const ITEM_BIG: u32 = 0xe000_fffe;
+/// Frames one after the other.
+#[derive(Debug)]
+pub(super) enum Pixels {
+    /// One value a pixel.
+    Values(Stored),
+    /// Red, green, blue and opacity, as sRGB.
+    Colours(Vec<[u8; 4]>),
+}
 
-/// The type of a file's pixels.
-pub(super) fn format(header: &Header) -> StoredFormat {
-    match (header.is_float, header.bits, header.signed) {
-        (true, 32, _) => StoredFormat::F32,
-        (true, ..) => StoredFormat::F64,
-        (_, 8, false) => StoredFormat::U8,
-        (_, 8, true) => StoredFormat::I8,
-        (_, 16, false) => StoredFormat::U16,
-        (_, 16, true) => StoredFormat::I16,
-        (.., false) => StoredFormat::U32,
-        (.., true) => StoredFormat::I32,
+impl Pixels {
+    /// Some pixels of all; `None` if there are fewer.
+    pub fn slice(&self, start: usize, count: usize) -> Option<Self> {
+        match self {
+            Self::Values(values) => pieces::slice(values, start, count).map(Self::Values),
+            Self::Colours(colours) => {
+                Some(Self::Colours(colours.get(start..start.checked_add(count)?)?.to_vec()))
+            }
+        }
+    }
+
+    /// Adds pixels of the same kind; `None` if there is no memory for them.
+    pub fn append(&mut self, more: Self) -> Option<()> {
+        match (self, more) {
+            (Self::Values(all), Self::Values(more)) => pieces::append(all, more),
+            (Self::Colours(all), Self::Colours(more)) => {
+                all.try_reserve(more.len()).ok()?;
+                all.extend(more);
+                Some(())
+            }
+            _ => None,
+        }
+    }
+
+    /// How many pixels there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Values(values) => crate::sources::stored::with_samples!(values, samples => samples.len()),
+            Self::Colours(colours) => colours.len(),
+        }
     }
 }
 
 /// Reads the pixels of all frames of a file.
-pub(super) fn read(path: &Path, notes: &mut Vec<String>) -> Result<Stored, SourceError> {
+pub(super) fn read(path: &Path, notes: &mut Vec<String>) -> Result<Pixels, SourceError> {
     let (header, mut elements, element) = Header::read_up_to_pixels(path)?;
-    if let Some(compression) = header.syntax.compression() {
-        let found = format!("its pixels are compressed by {compression} ({})", header.syntax.uid);
-        return Err(unsupported(path, &found, "unpack it with `gdcmconv --raw IN OUT` or `dcmdjpeg IN OUT`"));
+    if let Codec::Other(mend) = header.syntax.codec {
+        let found = format!("its pixels are packed by {} ({})", header.syntax.name, header.syntax.uid);
+        return Err(unsupported(path, &found, mend));
     }
-    let format = format(&header);
-    let size = [header.columns.into(), header.rows.into(), u32::try_from(header.frames).unwrap_or(u32::MAX)];
+    let stream = stream(path, &header)?;
+    let mut stored = match element.length {
+        None => encapsulated::read(path, &stream, &header, &mut elements)?,
+        Some(length) => {
+            let mut needed = stream.samples * stream.format.bytes();
+            if header.image.bits == 1 {
+                needed = needed.div_ceil(8);
+            } else if header.image.is_halved() {
+                needed = needed / 3 * 2;
+            }
+            if header.syntax.codec != Codec::Plain {
+                return Err(elements.error("packed pixels that are not in items; the file is damaged"));
+            }
+            if u64::from(length) < needed {
+                let plain = SampleStream { samples: needed / stream.format.bytes(), ..stream };
+                return Err(plain.length_error(length.into(), false, ""));
+            }
+            plain(stream, &element, elements, &header, notes)?
+        }
+    };
+    header.image.keep_stored_bits(&mut stored);
+    match header.image.kind() {
+        Kind::Value => Ok(Pixels::Values(stored)),
+        Kind::Palette => header.palette.colours(path, &stored, header.image.signed).map(Pixels::Colours),
+        _ => colour::of(path, &stored, &header.image, &header.syntax).map(Pixels::Colours),
+    }
+}
+
+/// The numbers of all frames, each pixel's next to each other, and how they are stored.
+fn stream<'a>(path: &'a Path, header: &Header) -> Result<SampleStream<'a>, SourceError> {
+    let Image { columns, rows, channels, .. } = header.image;
+    let format = header.image.format();
+    let size = [columns.into(), rows.into(), u32::try_from(header.frames).unwrap_or(u32::MAX)];
     let layout = |problem| SourceError::Layout { path: path.to_owned(), problem };
-    let bytes = checked_bytes(size, format.bytes()).map_err(layout)?;
-    let stream = SampleStream {
+    let bytes = checked_bytes(size, format.bytes() * u64::from(channels)).map_err(layout)?;
+    let colours = if channels == 1 { String::new() } else { format!("{channels} x ") };
+    Ok(SampleStream {
         path,
-        what: format!("{} x {} pixels of {} bytes in {} frames", size[0], size[1], format.bytes(), size[2]),
+        what: if header.image.bits == 1 {
+            format!("{} x {} pixels of 1 bit in {} frames", size[0], size[1], size[2])
+        } else {
+            format!(
+                "{} x {} pixels of {colours}{} bytes in {} frames",
+                size[0],
+                size[1],
+                format.bytes(),
+                size[2]
+            )
+        },
         samples: bytes / format.bytes(),
         pick: Pick::ALL,
         format,
@@ -57,128 +125,50 @@ pub(super) fn read(path: &Path, notes: &mut Vec<String>) -> Result<Stored, Sourc
         surplus: Surplus::Ignore,
         mend: &mend_by_header,
         hint: "",
-    };
-    let mut stored = match element.length {
-        None => runs(&stream, &header, &mut elements)?,
-        Some(length) => {
-            if u64::from(length) < bytes {
-                return Err(stream.length_error(length.into(), false, ""));
-            }
-            plain(&stream, &element, elements, notes)?
-        }
-    };
-    keep_stored_bits(&mut stored, &header);
-    Ok(stored)
+    })
 }
 
 fn plain(
-    stream: &SampleStream,
+    stream: SampleStream,
     element: &Element,
     elements: Elements,
+    header: &Header,
     notes: &mut Vec<String>,
 ) -> Result<Stored, SourceError> {
+    let wanted = stream.samples as usize;
+    let mut stream = stream;
+    if header.image.bits == 1 {
+        stream = SampleStream { samples: stream.samples.div_ceil(8), format: StoredFormat::U8, ..stream };
+    } else if header.image.is_halved() {
+        stream.samples = stream.samples / 3 * 2;
+    }
     let mut stored = stream.read_from(elements.reader, notes)?;
     // Words of two pixels: their bytes are the other way round.
-    if let (Stored::U8(pixels), Endian::Big, b"OW") = (&mut stored, stream.endian, &element.vr) {
+    let in_words = &element.vr == b"OW" && stream.endian == Endian::Big;
+    if let (true, Stored::U8(pixels)) = (in_words, &mut stored) {
         pixels.chunks_exact_mut(2).for_each(|word| word.swap(0, 1));
     }
-    Ok(stored)
-}
-
-/// Reads frames that are coded in runs of equal bytes, one item each.
-fn runs(stream: &SampleStream, header: &Header, elements: &mut Elements) -> Result<Stored, SourceError> {
-    if !header.syntax.is_rle() {
-        return Err(elements.error("pixels in items, though nothing says that they are compressed"));
-    }
-    let pixels = usize::from(header.columns) * usize::from(header.rows);
-    let frame = SampleStream { samples: pixels as u64, ..stream.clone() };
-    let mut all = stream.format.none();
-    // The first item is a table of where the others are.
-    item(elements)?;
-    for _ in 0..header.frames {
-        let item = item(elements)?.ok_or_else(|| elements.error("fewer frames than the header says"))?;
-        let bytes = decoded(&item, pixels, stream.format.bytes() as usize);
-        let bytes = bytes.ok_or_else(|| elements.error("the runs of a frame do not make its pixels"))?;
-        let samples = frame.read_from(Cursor::new(bytes), &mut Vec::new())?;
-        append(&mut all, samples).ok_or_else(|| stream.out_of_memory())?;
-    }
-    Ok(all)
-}
-
-/// The bytes of the next item; `None` if there is none.
-fn item(elements: &mut Elements) -> Result<Option<Vec<u8>>, SourceError> {
-    let tag = elements.u32()?;
-    let length = elements.u32()?;
-    // Two numbers of 16 bits, seen as one of 32.
-    if ![ITEM, ITEM_BIG].contains(&tag) {
-        return Ok(None);
-    }
-    let bytes = elements.take(length.into())?;
-    if bytes.len() < length as usize {
-        return Err(elements.error("the file ends within a frame; it is cut off"));
-    }
-    Ok(Some(bytes))
-}
-
-/// The pixels of a frame, the least significant byte first, from a run for each byte, the most significant first.
-fn decoded(item: &[u8], pixels: usize, bytes: usize) -> Option<Vec<u8>> {
-    let number = |index: usize| {
-        item.get(4 * index..4 * index + 4)?.try_into().ok().map(|bytes| u32::from_le_bytes(bytes) as usize)
-    };
-    if number(0)? != bytes {
-        return None;
-    }
-    let mut frame = Vec::new();
-    for run in 0..bytes {
-        let end = if run + 1 < bytes { number(run + 2)? } else { item.len() };
-        let plane = unpacked(item.get(number(run + 1)?..end)?, pixels)?;
-        if frame.is_empty() {
-            frame.try_reserve_exact(pixels * bytes).ok()?;
-            frame.resize(pixels * bytes, 0);
+    match stored {
+        Stored::U8(bytes) if header.image.bits == 1 => bits(&bytes, wanted)
+            .map(Stored::U8)
+            .ok_or_else(|| SourceError::OutOfMemory { path: stream.path.to_owned(), bytes: wanted as u64 }),
+        stored if header.image.is_halved() => Ok(colour::whole(&stored)),
+        stored if header.image.planar && header.image.channels > 1 => {
+            Ok(colour::interleaved(&stored, header.image.pixels()))
         }
-        let place = frame.iter_mut().skip(bytes - 1 - run).step_by(bytes);
-        place.zip(plane).for_each(|(to, from)| *to = from);
+        stored => Ok(stored),
     }
-    Some(frame)
 }
 
-/// So many bytes out of runs: PackBits, as in PS3.5 annex G.
-fn unpacked(mut runs: &[u8], count: usize) -> Option<Vec<u8>> {
-    let mut bytes = Vec::new();
-    while bytes.len() < count {
-        let (&control, rest) = runs.split_first()?;
-        match control {
-            0..128 => {
-                let literal = rest.split_at_checked(usize::from(control) + 1)?;
-                bytes.extend(literal.0);
-                runs = literal.1;
-            }
-            128 => runs = rest,
-            129.. => {
-                let (&value, rest) = rest.split_first()?;
-                bytes.resize(bytes.len() + 257 - usize::from(control), value);
-                runs = rest;
-            }
-        }
-    }
-    bytes.truncate(count);
-    Some(bytes)
+/// Pixels of one bit, the lowest of a byte first, across the borders of frames.
+fn bits(bytes: &[u8], count: usize) -> Option<Vec<u8>> {
+    let mut pixels = Vec::new();
+    pixels.try_reserve_exact(count).ok()?;
+    pixels.extend((0..count).map(|pixel| bytes[pixel / 8] >> (pixel % 8) & 1));
+    Some(pixels)
 }
 
-/// Clears bits that are not part of a pixel, and spreads the sign over them.
-fn keep_stored_bits(stored: &mut Stored, header: &Header) {
-    if header.is_float || header.stored_bits == header.bits {
-        return;
-    }
-    let up = u32::from(header.bits - 1 - header.high_bit);
-    let down = u32::from(header.bits - header.stored_bits);
-    macro_rules! keep {
-        ($($variant:ident)*) => {
-            match stored {
-                $(Stored::$variant(pixels) => pixels.iter_mut().for_each(|pixel| *pixel = *pixel << up >> down),)*
-                _ => {}
-            }
-        };
-    }
-    keep!(U8 I8 U16 I16 U32 I32);
+/// Samples of one frame out of bytes, the least significant first.
+pub(super) fn of_bytes(frame: &SampleStream, bytes: Vec<u8>) -> Result<Stored, SourceError> {
+    frame.read_from(Cursor::new(bytes), &mut Vec::new())
 }

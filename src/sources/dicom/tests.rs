@@ -1,5 +1,12 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod folders;
+mod frames;
+mod masks_and_colours;
+mod packed;
+mod places;
+mod values;
+
 use std::io::Write;
 
 use flate2::{Compression, write::DeflateEncoder};
@@ -73,11 +80,43 @@ impl Dicom {
         self.bytes.extend([group, element].concat());
         if self.syntax == IMPLICIT || tag >> 16 == 0xfffe {
             self.bytes.extend(self.number32(length));
-        } else if matches!(vr, b"OW" | b"OB" | b"SQ" | b"UN") {
+        } else if matches!(vr, b"OW" | b"OB" | b"OV" | b"SQ" | b"UN") {
             self.bytes.extend([vr.as_slice(), &[0, 0], &self.number32(length)].concat());
         } else {
             self.bytes.extend([vr.as_slice(), &self.number16(length as u16)].concat());
         }
+    }
+
+    /// A sequence of items, each filled by one of the functions.
+    fn sequence(&mut self, tag: u32, items: &[&dyn Fn(&mut Self)]) {
+        self.begin(tag, b"SQ", u32::MAX);
+        for fill in items {
+            self.begin(0xfffe_e000, b"  ", u32::MAX);
+            fill(self);
+            self.begin(0xfffe_e00d, b"  ", 0);
+        }
+        self.begin(0xfffe_e0dd, b"  ", 0);
+    }
+
+    /// Text, padded to an even length.
+    fn text(&mut self, tag: u32, vr: &[u8; 2], text: &str) {
+        let padded = if text.len().is_multiple_of(2) { text.to_owned() } else { format!("{text} ") };
+        self.add(tag, vr, padded.as_bytes());
+    }
+
+    /// Packed frames in items, behind a table of where they begin.
+    fn items(mut self, table: &[u32], items: &[&[u8]]) -> Self {
+        self.begin(0x7fe0_0010, b"OB", u32::MAX);
+        self.add(
+            0xfffe_e000,
+            b"  ",
+            &table.iter().flat_map(|place| place.to_le_bytes()).collect::<Vec<u8>>(),
+        );
+        for item in items {
+            self.add(0xfffe_e000, b"  ", item);
+        }
+        self.begin(0xfffe_e0dd, b"  ", 0);
+        self
     }
 
     fn pixels(mut self, pixels: &[u16]) -> Self {
@@ -188,10 +227,13 @@ fn frames_of_one_file_get_their_places_from_its_sequences() {
 fn what_is_wrong_is_told() {
     let folder = Folder::new();
     let refused = |dicom: &Dicom| folder.refusal("a.dcm", dicom.file());
-    let jpeg = Dicom::slice("1.2.840.10008.1.2.4.70", 0.0, "1").pixels(&PIXELS);
+    let xl = Dicom::slice("1.2.840.10008.1.2.4.110", 0.0, "1").items(&[], &[&[0; 64]]);
     assert!(
-        refused(&jpeg)
-            .contains("compressed by lossless JPEG (1.2.840.10008.1.2.4.70); unpack it with `gdcmconv")
+        refused(&xl).contains(
+            "packed by JPEG XL Lossless (1.2.840.10008.1.2.4.110); unpack it with `dicom-transcode`"
+        ),
+        "{}",
+        refused(&xl)
     );
     let short = Dicom::slice(EXPLICIT, 0.0, "1").pixels(&PIXELS[..5]);
     assert!(
@@ -203,10 +245,11 @@ fn what_is_wrong_is_told() {
     assert!(folder.refusal("a.dcm", &cut[..cut.len() - 3]).contains("need 12"));
     assert!(refused(&Dicom::slice(EXPLICIT, 0.0, "1")).contains("without pixels"));
     let mut colours = Dicom::slice(EXPLICIT, 0.0, "1");
-    colours.short(0x0028_0002, 3);
-    assert!(refused(&colours.pixels(&PIXELS)).contains("its pixels are colours"));
-    let bit = Dicom::empty(EXPLICIT).image(b"1\\1 ", 1, 1, 0).pixels(&PIXELS);
-    assert!(refused(&bit).contains("its pixels have 1 bits"));
+    colours.short(0x0028_0002, 4);
+    colours.add(0x0028_0004, b"CS", b"CMYK");
+    assert!(refused(&colours.pixels(&PIXELS)).contains("its pixels are 4 numbers of `CMYK`"));
+    let bits = Dicom::empty(EXPLICIT).image(b"1\\1 ", 12, 12, 0).pixels(&PIXELS);
+    assert!(refused(&bits).contains("its pixels have 12 bits"));
     let mut many = Dicom::slice(EXPLICIT, 0.0, "1");
     many.add(0x0028_0008, b"IS", b"60000 ");
     assert!(refused(&many.pixels(&PIXELS)).contains("fewer than expected"));

@@ -19,7 +19,8 @@ pub enum Space {
 pub struct Frame {
     /// The centre of voxel (0, 0, 0), mm.
     pub origin: DVec3,
-    /// The directions of the volume's x, y and z, of unit length; not at right angles where a scanner was tilted.
+    /// The directions of the volume's x, y and z, of unit length. Where layers are stacked at a slant, as under a tilted gantry,
+    /// the one across them is not at right angles to the others, and longer: by it a voxel is as far as its spacing says.
     pub directions: [DVec3; 3],
     /// What the coordinates mean.
     pub space: Space,
