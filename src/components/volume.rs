@@ -12,7 +12,7 @@ pub use crate::sources::{Endian, SampleFormat};
 ///
 /// | variant | what it reads |
 /// |---|---|
-/// | `File(path)` | a file that says itself what it holds: NRRD, NIfTI, MetaImage, DICOM (one file, or a folder with a series), legacy VTK structured points |
+/// | `File(path)` | a file that says itself what it holds: NRRD, NIfTI, MetaImage, DICOM (one file, a folder with series, also in folders within it, or a DICOMDIR), legacy VTK structured points |
 /// | `Raw(…)` | bare samples, described by its fields |
 ///
 /// Which format a `File` is, its content says. Its spacing is in mm. Where it says how it lies in a patient, as NIfTI and DICOM do,
