@@ -1,6 +1,9 @@
 //! Which of the images in a folder make the volume.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{
+    collections::{BTreeMap, HashMap},
+    path::Path,
+};
 
 use glam::DVec3;
 
@@ -38,7 +41,11 @@ pub(super) fn choose(
         groups.sort_by_key(|group| std::cmp::Reverse(images(group)));
     }
     series.sort_by_key(|groups| std::cmp::Reverse(groups.first().map_or(0, images)));
-    let names: Vec<String> = series.iter().map(|groups| name(groups, &series)).collect();
+    let mut with_number: HashMap<String, usize> = HashMap::new();
+    for (_, header) in series.iter().filter_map(|groups| groups.first().and_then(|group| group.first())) {
+        *with_number.entry(header.series_number.clone()).or_default() += 1;
+    }
+    let names: Vec<String> = series.iter().map(|groups| name(groups, &with_number)).collect();
     let chosen = match wanted {
         None => 0,
         Some(wanted) => series.iter().position(|groups| is_called(groups, wanted)).ok_or_else(|| {
@@ -109,14 +116,11 @@ fn images(group: &Group) -> usize {
 }
 
 /// `` `AX T1` of 16 (`series: "3"`) ``: by its number where no other series has it.
-fn name(groups: &[Group], all: &[Vec<Group>]) -> String {
+fn name(groups: &[Group], with_number: &HashMap<String, usize>) -> String {
     let Some((_, header)) = groups.first().and_then(|group| group.first()) else { return String::new() };
-    let number = |groups: &Vec<Group>| {
-        groups.first().and_then(|group| group.first()).map(|(_, h)| h.series_number.clone())
-    };
-    let is_unique = !header.series_number.is_empty()
-        && all.iter().filter(|groups| number(groups).as_ref() == Some(&header.series_number)).count() == 1;
-    let chooses = if is_unique { &header.series_number } else { &header.series };
+    let number = &header.series_number;
+    let is_unique = !number.is_empty() && with_number.get(number) == Some(&1);
+    let chooses = if is_unique { number } else { &header.series };
     let description: String =
         header.description.chars().filter(|letter| !letter.is_control()).take(MAX_DESCRIPTION).collect();
     let description = if description.is_empty() { "no name" } else { &description };

@@ -1,7 +1,7 @@
 //! The files of a folder, of those within it, and of what an index of them names.
 
 use std::{
-    collections::HashSet,
+    collections::{HashMap, HashSet},
     fs,
     io::Read,
     path::{Path, PathBuf},
@@ -105,7 +105,7 @@ fn begins_like_dicom(path: &Path) -> bool {
 pub(super) fn index(path: &Path) -> Result<Option<Vec<PathBuf>>, SourceError> {
     let folder = path.parent().unwrap_or(Path::new("."));
     let mut elements = Elements::open(path)?;
-    let (mut files, mut is_index) = (Vec::new(), false);
+    let (mut files, mut is_index, mut listings) = (Vec::new(), false, Listings::new());
     while let Some(element) = elements.next()? {
         if tags::is_pixels(element.tag) {
             return Ok(None);
@@ -113,14 +113,22 @@ pub(super) fn index(path: &Path) -> Result<Option<Vec<PathBuf>>, SourceError> {
         is_index |= element.tag == tags::DIRECTORY;
         if element.tag == tags::REFERENCED_FILE && files.len() < MAX_ENTRIES {
             let parts = text(&element.value);
-            files.extend(named(folder, parts.split('\\').map(|part| part.trim_matches([' ', '\0']))));
+            let parts = parts.split('\\').map(|part| part.trim_matches([' ', '\0']));
+            files.extend(named(folder, parts, &mut listings));
         }
     }
     Ok(is_index.then_some(files))
 }
 
+/// The entries of folders, by their names in lower case.
+type Listings = HashMap<PathBuf, HashMap<String, PathBuf>>;
+
 /// A file below a folder, whichever case its name and those of the folders have; `None` if there is none, or it is elsewhere.
-fn named<'a>(folder: &Path, parts: impl Iterator<Item = &'a str>) -> Option<PathBuf> {
+fn named<'a>(
+    folder: &Path,
+    parts: impl Iterator<Item = &'a str>,
+    listings: &mut Listings,
+) -> Option<PathBuf> {
     let mut path = folder.to_owned();
     for part in parts {
         if part.is_empty() || part == "." || part == ".." || part.contains(['/', '\\']) {
@@ -130,12 +138,14 @@ fn named<'a>(folder: &Path, parts: impl Iterator<Item = &'a str>) -> Option<Path
         path = if exact.exists() {
             exact
         } else {
-            let entries =
-                fs::read_dir(&path).ok()?.take(MAX_ENTRIES).filter_map(|entry| Some(entry.ok()?.path()));
-            entries.into_iter().find(|entry| {
-                entry.file_name().is_some_and(|name| name.to_string_lossy().eq_ignore_ascii_case(part))
-            })?
+            let listing = listings.entry(path.clone()).or_insert_with(|| listing(&path));
+            listing.get(&part.to_lowercase())?.clone()
         };
     }
     path.is_file().then_some(path)
+}
+
+fn listing(folder: &Path) -> HashMap<String, PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().take(MAX_ENTRIES).flatten();
+    entries.map(|entry| (entry.file_name().to_string_lossy().to_lowercase(), entry.path())).collect()
 }

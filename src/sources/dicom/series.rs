@@ -157,6 +157,8 @@ pub(super) fn gather(
     pixels: usize,
     notes: &mut Vec<String>,
 ) -> Result<Pixels, SourceError> {
+    // A file of its own that is in order already is taken as it is.
+    let in_order = slices.iter().enumerate().all(|(number, slice)| slice.file == 0 && slice.frame == number);
     let mut all: Option<Pixels> = None;
     let mut read: Option<(usize, Pixels)> = None;
     for slice in slices {
@@ -164,8 +166,6 @@ pub(super) fn gather(
             Some((file, frames)) if file == slice.file => frames,
             _ => pixels::read(&files[slice.file].0, notes)?,
         };
-        let in_order =
-            slices.iter().enumerate().all(|(number, slice)| slice.file == 0 && slice.frame == number);
         if in_order && frames.len() == slices.len() * pixels {
             return Ok(frames);
         }

@@ -1,6 +1,9 @@
 //! The frames of a series in the order in which they lie, and how far apart they are.
 
-use std::path::Path;
+use std::{
+    collections::{BTreeMap, HashMap},
+    path::Path,
+};
 
 use glam::{DVec3, IVec3};
 
@@ -43,9 +46,9 @@ impl Slice {
         self.place.along.unwrap_or(0.0)
     }
 
-    fn key(&self) -> (Option<[IVec3; 2]>, Option<&String>) {
+    fn key(&self) -> (Option<[IVec3; 2]>, Option<String>) {
         let rounded = |axis: DVec3| (axis * 100.0).round().as_ivec3();
-        (self.is.orientation.map(|axes| axes.map(rounded)), self.is.stack.as_ref())
+        (self.is.orientation.map(|axes| axes.map(rounded)), self.is.stack.clone())
     }
 }
 
@@ -93,11 +96,13 @@ pub(super) fn choose(
     notes: &mut Vec<String>,
 ) -> Result<Vec<Slice>, SourceError> {
     let mut parts: Vec<Vec<Slice>> = Vec::new();
+    let mut part_of = HashMap::new();
     for slice in slices {
-        match parts.iter_mut().find(|part| part[0].key() == slice.key()) {
-            Some(part) => part.push(slice),
-            None => parts.push(vec![slice]),
+        let part = *part_of.entry(slice.key()).or_insert(parts.len());
+        if part == parts.len() {
+            parts.push(Vec::new());
         }
+        parts[part].push(slice);
     }
     parts.sort_by_key(|part| std::cmp::Reverse(part.len()));
     let count = parts.len();
@@ -138,14 +143,13 @@ fn at_each_place(mut slices: Vec<Slice>) -> Vec<Vec<Slice>> {
         let apart = a.along() - b.along();
         if apart.abs() < SAME_PLACE { later(a).cmp(&later(b)) } else { apart.total_cmp(&0.0) }
     });
-    let mut times: Vec<i64> = slices.iter().filter_map(|slice| slice.is.time).collect();
-    let all_have_time = times.len() == slices.len();
-    times.sort_unstable();
-    times.dedup();
+    let mut by_time: BTreeMap<i64, Vec<Slice>> = BTreeMap::new();
+    for slice in &slices {
+        by_time.entry(slice.is.time.unwrap_or(i64::MIN)).or_default().push(slice.clone());
+    }
     let mut volumes: Vec<Vec<Slice>> = Vec::new();
     let (mut last, mut number) = (f64::NEG_INFINITY, 0);
-    let by_number = slices.clone();
-    for slice in by_number {
+    for slice in slices {
         number = if slice.along() - last < SAME_PLACE { number + 1 } else { 0 };
         last = if number == 0 { slice.along() } else { last };
         if volumes.len() <= number {
@@ -155,9 +159,8 @@ fn at_each_place(mut slices: Vec<Slice>) -> Vec<Vec<Slice>> {
     }
     // Where a time is missing at some place, the others would take its turn.
     let is_even = volumes.iter().all(|volume| volume.len() == volumes[0].len());
-    if !is_even && all_have_time && times.len() == volumes.len() {
-        let of = |time: i64| slices.iter().filter(|slice| slice.is.time == Some(time)).cloned().collect();
-        return times.into_iter().map(of).collect();
+    if !is_even && !by_time.contains_key(&i64::MIN) && by_time.len() == volumes.len() {
+        return by_time.into_values().collect();
     }
     volumes
 }
