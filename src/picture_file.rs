@@ -31,8 +31,11 @@ pub(crate) enum WriteError {
 
 /// Whether another place would do.
 pub(crate) fn is_place_at_fault(error: &io::Error) -> bool {
-    use io::ErrorKind::{IsADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem};
-    [PermissionDenied, NotFound, IsADirectory, ReadOnlyFilesystem].contains(&error.kind())
+    use io::ErrorKind::{
+        InvalidFilename, IsADirectory, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem,
+    };
+    [PermissionDenied, NotFound, IsADirectory, NotADirectory, InvalidFilename, ReadOnlyFilesystem]
+        .contains(&error.kind())
 }
 
 fn mend(error: &io::Error) -> &'static str {

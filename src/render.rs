@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, PassTimer, read_texture};
 use crate::passes::{products, raycast::RayCaster, surface::Surface, tonemap::Tonemap};
+use crate::plain::piece;
 use crate::report::Report;
 use crate::scene::{self, EntityProblems, Override, Problem, Problems, SceneDocument, Severity};
 use crate::view::Picture;
@@ -73,14 +74,14 @@ pub fn problems(world: &World, document: &SceneDocument) -> Vec<Problem> {
         let Some((entity, path)) = &problem.subject else { return problem.clone() };
         let name = world.get::<Name>(*entity).map(Name::as_str);
         let place = name.and_then(|name| document.entity(name)).map(|entity| entity.place_of(path));
-        let who = name.map_or(String::new(), |name| format!("`{name}`: "));
+        let who = name.map_or(String::new(), |name| format!("`{}`: ", piece(name)));
         Problem { message: format!("{who}{}", problem.message), place, ..problem.clone() }
     };
     let whole = world.resource::<Problems>().0.iter().map(placed);
     let mut own: Vec<Problem> =
         entity_problems(world).iter().flat_map(|all| all.iter()).map(placed).collect();
     // Entities have no order of their own; a text has.
-    own.sort_by_key(|problem| {
+    own.sort_by_cached_key(|problem| {
         problem.place.as_ref().map(|place| (place.file.path().to_owned(), place.bytes.start))
     });
     whole.chain(own).collect()

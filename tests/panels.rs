@@ -455,3 +455,28 @@ fn conflicts_are_decided_where_they_are_listed() {
     assert_eq!(shown(&harness), 5.0);
     assert!(harness.query_by_label("Ours: millimetres_per_unit").is_none());
 }
+
+#[test]
+fn edits_of_an_earlier_run_are_offered() {
+    for (answer, command) in
+        [("Take back", Some(Command::Recover)), ("Delete", Some(Command::ForgetRecovered)), ("Later", None)]
+    {
+        let mut harness = panels(SCENE);
+        assert!(harness.query_by_label("Take back").is_none());
+        let folder = tempfile::tempdir().unwrap();
+        let (file, kept) = (folder.path().join("s.ron"), folder.path().join("s.recovered.ron"));
+        std::fs::write(&file, SCENE).unwrap();
+        let world = harness.state_mut().app.world_mut();
+        let edits = Edits::open(world, &file, &[]).unwrap();
+        world.insert_resource(edits);
+        world.insert_resource(ui::Recovered(vec![(file, kept.clone())]));
+        harness.run();
+        harness.get_by_label(&kept.display().to_string());
+        harness.get_by_label(answer).click();
+        harness.run();
+        assert_eq!(commands(&mut harness), command.into_iter().collect::<Vec<_>>(), "{answer}");
+        if answer == "Later" {
+            assert!(harness.query_by_label("Take back").is_none());
+        }
+    }
+}

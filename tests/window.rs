@@ -62,6 +62,10 @@ struct Screen {
     folder: tempfile::TempDir,
 }
 
+/// Has the next update of the world panic.
+#[derive(bevy_ecs::prelude::Resource)]
+struct Fuse;
+
 const SIZE: glam::UVec2 = glam::UVec2::new(640, 400);
 
 impl Screen {
@@ -77,6 +81,9 @@ impl Screen {
             pollster::block_on(Gpu::new(&GpuOptions::default())).unwrap_or_else(|error| panic!("{error}"));
         let mut app = App::new();
         app.add_plugins(TyndallPlugins).insert_resource(gpu.clone());
+        app.add_systems(bevy_app::Update, |fuse: Option<bevy_ecs::prelude::Res<Fuse>>| {
+            assert!(fuse.is_none(), "a bug")
+        });
         let scene = LiveScene::open(&mut app, &path, overrides);
         // No room for panels: the picture is as large as the screen, but for the bars.
         let none = OpenPanels { entities: false, inspector: false, report: false, log: false, axes: false };
@@ -377,6 +384,34 @@ fn overrides_are_edits_that_can_be_saved() {
     assert!(blue > 60.0 && red < 60.0, "{red} {blue}");
     screen.press(egui::Key::S, Modifiers::COMMAND);
     assert_eq!(screen.text(), others.replace("(0.8, 0.0, 0.0)", "(0.0, 0.0, 0.8)"));
+}
+
+#[needs(gpu)]
+#[test]
+fn a_panic_keeps_edits_and_the_next_window_offers_them() {
+    let mut screen = Screen::new(BALL);
+    screen.settle();
+    screen.set("Phong.shininess", 77.0_f32);
+    screen.settle();
+    screen.session.world().insert_resource(Fuse);
+    screen.set("Phong.shininess", 78.0_f32);
+    let kept = screen.folder.path().join("scene.recovered.ron");
+    assert!(!kept.exists());
+    let panicked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| screen.settle()));
+    assert!(panicked.is_err() && screen.text() == BALL, "what was saved is as it was");
+    let text = std::fs::read_to_string(&kept).unwrap();
+    assert_eq!(text.replace(", shininess: 78.0", ""), BALL, "{text}");
+    assert_ne!(text, BALL);
+    // The scene is opened again.
+    let mut app = App::new();
+    app.add_plugins(TyndallPlugins).insert_resource(screen.gpu.clone());
+    let scene = LiveScene::open(&mut app, &screen.scene(), &[]);
+    let screenshots = screen.folder.path().to_owned();
+    let mut session = Session::new(app, SessionOptions { scene, camera: None, screenshots, tell: None });
+    let offered = session.world().resource::<tyndall::ui::Recovered>().clone();
+    assert_eq!(offered.0, [(screen.scene(), kept.clone())]);
+    let lines = session.world().resource::<Log>().lines();
+    assert!(lines.iter().any(|line| line.text.contains(&kept.display().to_string())), "{lines:?}");
 }
 
 #[needs(gpu)]

@@ -128,8 +128,13 @@ struct Viewer {
 
 impl Viewer {
     fn new(folder: &Path, display: &str, variables: &[(&str, &str)]) -> Self {
+        Self::of(&[], folder, display, variables)
+    }
+
+    fn of(arguments: &[&str], folder: &Path, display: &str, variables: &[(&str, &str)]) -> Self {
         let mut program = Command::new(env!("CARGO_BIN_EXE_tyndall"))
             .args(["view", "scene.ron"])
+            .args(arguments)
             .current_dir(folder)
             .env("DISPLAY", display)
             .env_remove("WAYLAND_DISPLAY")
@@ -284,6 +289,23 @@ fn a_scene_is_opened_edited_turned_and_closed() {
     assert!(viewer.end().success(), "{}", viewer.said());
     let window = fs::read_to_string(remembered(&folder)).unwrap();
     assert!(window.contains("900") && window.contains("entities: false"), "{window}");
+}
+
+#[needs(gpu, display)]
+#[test]
+fn a_window_that_is_terminated_keeps_edits() {
+    let (display, folder) = (Display::new(), place());
+    let set = ["--set", "bar.Phong.shininess=77.0"];
+    let mut viewer = Viewer::of(&set, folder.path(), &display.name, &[]);
+    viewer.settle();
+    let sent = Command::new("kill").args(["-s", "TERM", &viewer.program.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    let ended = viewer.end();
+    assert_eq!(std::os::unix::process::ExitStatusExt::signal(&ended), Some(15), "{}", viewer.said());
+    let kept = fs::read_to_string(folder.path().join("scene.recovered.ron")).unwrap();
+    assert!(kept.contains("shininess: 77.0"), "{kept}");
+    assert_eq!(fs::read_to_string(folder.path().join("scene.ron")).unwrap(), BAR);
+    wait("where edits are kept to be said", || viewer.said().contains("scene.recovered.ron").then_some(()));
 }
 
 #[needs(gpu, display)]

@@ -3,6 +3,7 @@
 use super::arguments::CheckArguments;
 use super::exit::{self, Failure};
 use super::open::{Directions, Input};
+use super::terminal;
 use crate::render;
 use crate::scene::{self, Problem, SceneDocument, Severity};
 use bevy_app::App;
@@ -20,11 +21,11 @@ pub(super) fn run(app: &mut App, arguments: &CheckArguments) -> Result<(), Failu
             all.extend(problems.iter().map(|problem| describe(scene, problem)));
         } else {
             exit::print(&problems);
-            eprintln!("{}: {}", scene.display(), exit::count(&problems));
+            terminal::tell(format_args!("{}: {}", scene.display(), exit::count(&problems)));
         }
     }
     if arguments.json {
-        println!("{:#}", serde_json::Value::from(all));
+        terminal::json(&all.into())?;
     }
     if fine { Ok(()) } else { Err(Failure::Input) }
 }
@@ -45,8 +46,8 @@ fn describe(scene: &Path, problem: &Problem) -> serde_json::Value {
     serde_json::json!({
         "scene": scene,
         "severity": match problem.severity { Severity::Note => "note", Severity::Error => "error" },
-        "message": problem.message,
-        "help": problem.help,
+        "message": problem.shown_message(),
+        "help": problem.shown_help(),
         "place": place,
     })
 }

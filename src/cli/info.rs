@@ -4,8 +4,10 @@ use super::arguments::InfoArguments;
 use super::exit::{self, Failure};
 use super::open::{Directions, Input};
 use super::render::gpu_description;
+use super::terminal;
 use crate::gpu::{Gpu, GpuOptions};
 use crate::loading::{Contents, contents};
+use crate::plain;
 use crate::render;
 use crate::sources::Histogram;
 use bevy_app::App;
@@ -33,12 +35,7 @@ pub(super) fn run(app: &mut App, arguments: &InfoArguments) -> Result<(), Failur
                 .into()
         }
     };
-    if arguments.json {
-        println!("{facts:#}");
-    } else {
-        print!("{}", lines(&facts, 0));
-    }
-    Ok(())
+    if arguments.json { terminal::json(&facts) } else { terminal::data(&lines(&facts, 0)) }
 }
 
 fn machine() -> Result<Value, Failure> {
@@ -105,7 +102,7 @@ fn lines(facts: &Value, depth: usize) -> String {
     let Value::Object(facts) = facts else { return String::new() };
     let indent = "  ".repeat(depth);
     let line = |(name, value): (&String, &Value)| match value {
-        Value::Object(_) => format!("{indent}{name}\n{}", lines(value, depth + 1)),
+        Value::Object(_) => format!("{indent}{}\n{}", plain::line(name), lines(value, depth + 1)),
         Value::String(text) => format!("{indent}{name}: {text}\n"),
         other => format!("{indent}{name}: {other}\n"),
     };

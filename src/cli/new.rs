@@ -2,10 +2,10 @@
 
 use super::arguments::NewArguments;
 use super::exit::Failure;
-use super::output;
+use super::{output, terminal};
 use crate::scene::{is_data, scene_of_files};
 use crate::whole_file::folder_of;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub(super) fn run(arguments: &NewArguments) -> Result<(), Failure> {
     if let Some(output) = &arguments.output {
@@ -22,16 +22,18 @@ pub(super) fn run(arguments: &NewArguments) -> Result<(), Failure> {
         return Err(Failure::Usage(format!("{} is not empty; nothing was written", folder.display())));
     }
     let files = if arguments.plugin { plugin(folder, arguments.tyndall.as_deref())? } else { scene() };
+    let mut made = Made::default();
     for (name, contents) in files {
         let path = folder.join(name);
-        if let Some(parent) = path.parent() {
-            let made = std::fs::create_dir_all(parent);
-            made.map_err(|error| {
-                Failure::Usage(format!("cannot make the folder {}: {error}", parent.display()))
-            })?;
+        let written = made.folders_to(&path).and_then(|()| output::write(&path, &contents));
+        if let Err(failure) = written {
+            made.undo();
+            return Err(failure);
         }
-        output::write(&path, &contents)?;
-        eprintln!("wrote {}", path.display());
+        made.files.push(path);
+    }
+    for path in made.files {
+        terminal::tell(format_args!("wrote {}", path.display()));
     }
     Ok(())
 }
@@ -52,8 +54,37 @@ fn scene_for(arguments: &NewArguments, output: &Path) -> Result<(), Failure> {
     let text = scene_of_files(&arguments.paths, &folder_of(output), &arguments.directions.orientation());
     let text = text.map_err(|error| Failure::Usage(error.to_string()))?;
     output::write(output, text.as_bytes())?;
-    eprintln!("wrote {}", output.display());
+    terminal::tell(format_args!("wrote {}", output.display()));
     Ok(())
+}
+
+/// What was made so far: all of it, or nothing, is to be there in the end.
+#[derive(Default)]
+struct Made {
+    folders: Vec<PathBuf>,
+    files: Vec<PathBuf>,
+}
+
+impl Made {
+    /// Makes the folders that a file lies in.
+    fn folders_to(&mut self, path: &Path) -> Result<(), Failure> {
+        let missing =
+            path.ancestors().skip(1).take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists());
+        let missing: Vec<&Path> = missing.collect();
+        for folder in missing.into_iter().rev() {
+            std::fs::create_dir(folder).map_err(|error| {
+                Failure::Usage(format!("cannot make the folder {}: {error}", folder.display()))
+            })?;
+            self.folders.push(folder.to_owned());
+        }
+        Ok(())
+    }
+
+    fn undo(self) {
+        // What cannot be taken away either is left.
+        self.files.iter().for_each(|file| _ = std::fs::remove_file(file));
+        self.folders.iter().rev().for_each(|folder| _ = std::fs::remove_dir(folder));
+    }
 }
 
 type Files = Vec<(&'static str, Vec<u8>)>;

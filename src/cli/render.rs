@@ -3,9 +3,11 @@
 use super::arguments::RenderArguments;
 use super::exit::{self, Failure};
 use super::open::Input;
+use super::outputs::Outputs;
 use super::{output, progress};
 use crate::components::ViewCamera;
 use crate::gpu::{Gpu, GpuOptions};
+use crate::plain;
 use crate::render::{self, RenderError};
 use crate::report::Report;
 use crate::scene::{Problem, SceneDocument, Severity, nearest};
@@ -16,16 +18,16 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 pub(super) fn run(app: &mut App, arguments: &RenderArguments, started: Instant) -> Result<(), Failure> {
-    output::check_folder(&arguments.output)?;
+    let outputs = Outputs::check(arguments)?;
     let input = Input::of(&arguments.files, &arguments.directions)?;
-    arguments.stats.as_deref().map_or(Ok(()), output::check_folder)?;
     app.world_mut().resource_mut::<Report>().spent("start", started);
     // The driver takes its time to wake up; meanwhile the scene is read.
     let options = GpuOptions { portable: arguments.portable };
     let gpu = std::thread::spawn(move || (pollster::block_on(Gpu::new(&options)), Instant::now()));
     let document = input.load(app, &arguments.overrides);
     let fine = check_document(app, &document)
-        .and_then(|()| check_camera(app.world_mut(), arguments.camera.as_deref()));
+        .and_then(|()| check_camera(app.world_mut(), arguments.camera.as_deref()))
+        .and_then(|()| outputs.spare(&document));
     if let Err(failure) = fine {
         // Drivers do not take it well when the program ends while they wake up.
         let _ = gpu.join();
@@ -57,6 +59,7 @@ pub(super) fn run(app: &mut App, arguments: &RenderArguments, started: Instant) 
             exit::print(&render::problems(app.world(), &document));
         }
         let image = drawn?;
+        outputs.spare_read(app.world())?;
         let writing = Instant::now();
         output::write_image(&path, &image)?;
         app.world_mut().resource_mut::<Report>().spent("write", writing);
@@ -106,11 +109,11 @@ pub(super) fn check_camera(world: &mut World, wanted: Option<&str>) -> Result<()
         None if names.is_empty() => "the scene has no ViewCamera".into(),
         None => format!("the scene has: {}", names.join(", ")),
     };
-    Err(Failure::Usage(format!("there is no camera `{wanted}`: {help}")))
+    Err(Failure::Usage(plain::message(&format!("there is no camera `{wanted}`: {help}"))))
 }
 
 /// `out.png`, or `out_0007.png` for a frame.
-fn frame_path(output: &Path, frame: Option<u64>) -> PathBuf {
+pub(super) fn frame_path(output: &Path, frame: Option<u64>) -> PathBuf {
     let Some(frame) = frame else { return output.to_owned() };
     let stem = output.file_stem().unwrap_or_default().to_string_lossy();
     let ending = output.extension().unwrap_or_default().to_string_lossy();

@@ -23,6 +23,14 @@ pub enum GpuError {
     /// A shader does not compile.
     #[error("the shader {0} does not compile:\n{1}")]
     Shader(String, String),
+    /// A file that stands in for a shader cannot be read.
+    #[error("cannot read the shader {}: {reason}; mend it, or take it away to use the shader built in", path.display())]
+    ShaderFile {
+        /// The file.
+        path: std::path::PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A shader imports what does not exist.
     #[error("{file}:{line}: there is no shader `{import}` to import")]
     Import {

@@ -3,6 +3,7 @@
 //! They are built into the program. With `TYNDALL_SHADERS` set to a folder, a file of the same path in it is used instead.
 
 use super::{Gpu, GpuError};
+use crate::regular_file::{self, Unopened};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -76,7 +77,8 @@ pub(crate) fn affected<'a>(
     let names = SOURCES.iter().map(|(name, ..)| *name).chain(generated.iter().map(|(name, _)| *name));
     let imports: Vec<(&str, Vec<String>)> = names
         .map(|name| {
-            let text = source(name, generated).unwrap_or_default();
+            // One that cannot be read is told of when it is compiled.
+            let text = source(name, generated).ok().flatten().unwrap_or_default();
             (name, text.lines().filter_map(import).map(str::to_owned).collect())
         })
         .collect();
@@ -141,7 +143,7 @@ impl Expanded {
         done: &mut Vec<String>,
     ) -> Result<(), GpuError> {
         done.push(name.into());
-        for (index, line) in source(name, generated).unwrap_or_default().lines().enumerate() {
+        for (index, line) in source(name, generated)?.unwrap_or_default().lines().enumerate() {
             let Some(import) = import(line) else {
                 self.text.push_str(line);
                 self.text.push('\n');
@@ -151,7 +153,7 @@ impl Expanded {
             if done.iter().any(|known| known == import) {
                 continue;
             }
-            if source(import, generated).is_none() {
+            if source(import, generated)?.is_none() {
                 return Err(GpuError::Import {
                     file: format!("{name}.wgsl"),
                     line: index + 1,
@@ -169,13 +171,34 @@ fn import(line: &str) -> Option<&str> {
     line.strip_prefix("#import ").map(str::trim)
 }
 
-fn source<'a>(name: &str, generated: &'a [(&str, String)]) -> Option<Cow<'a, str>> {
+/// The text of a module, if there is one of this name.
+fn source<'a>(name: &str, generated: &'a [(&str, String)]) -> Result<Option<Cow<'a, str>>, GpuError> {
     if let Some((_, text)) = generated.iter().find(|(known, _)| *known == name) {
-        return Some(Cow::Borrowed(text));
+        return Ok(Some(Cow::Borrowed(text)));
     }
-    let (_, path, built_in) = SOURCES.iter().find(|(known, ..)| *known == name)?;
-    let own = folder().and_then(|folder| std::fs::read_to_string(folder.join(path)).ok());
-    Some(own.map_or(Cow::Borrowed(*built_in), Cow::Owned))
+    let Some((_, path, built_in)) = SOURCES.iter().find(|(known, ..)| *known == name) else {
+        return Ok(None);
+    };
+    let own = folder().map_or(Ok(None), |folder| own_text(&folder.join(path)));
+    own.map(|own| Some(own.map_or(Cow::Borrowed(*built_in), Cow::Owned)))
+}
+
+/// Bytes of a shader file; a longer one is something else.
+const LONGEST: u64 = 1 << 24;
+
+/// The text of a file in [`folder`], if it is there.
+fn own_text(path: &Path) -> Result<Option<String>, GpuError> {
+    let failed = |reason: String| Err(GpuError::ShaderFile { path: path.to_owned(), reason });
+    match regular_file::read(path, LONGEST) {
+        Ok(bytes) if bytes.len() as u64 > LONGEST => failed(format!("it is longer than {LONGEST} bytes")),
+        Ok(bytes) => match String::from_utf8(bytes) {
+            Ok(text) => Ok(Some(text)),
+            Err(_) => failed("it is not UTF-8 text".into()),
+        },
+        Err(Unopened::NotAFile(found)) => failed(format!("expected a file, found {found}")),
+        Err(Unopened::Io(error)) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(Unopened::Io(error)) => failed(error.to_string()),
+    }
 }
 
 /// Compiles a shader. Errors are those of naga, with the text around them and the place in its file.

@@ -1,10 +1,10 @@
 //! Components kept in files of their own.
 
-use super::loader::read_text;
 use super::parts::Part;
 use super::problem::{Problem, Severity};
 use super::reader::Reader;
-use bevy_reflect::{Reflect, TypeRegistry};
+use super::text::{COMPONENT, read_text, stranger};
+use bevy_reflect::{Reflect, TypeRegistration, TypeRegistry};
 use std::any::TypeId;
 use std::path::Path;
 
@@ -21,16 +21,30 @@ pub fn read_component(
     let Some(registration) = registry.get(component) else {
         return Err(vec![Problem::error("the type of this component is not registered for reflection")]);
     };
-    let file = read_text(path).map_err(|problem| vec![*problem])?;
-    let name = registration.type_info().type_path_table().short_path();
-    let mut reader = Reader::new(registry, file.clone());
-    let whole = Part::whole(file.text()).trimmed();
-    if whole.text.is_empty() {
-        let problem = Problem::error("the file is empty").label("nothing but white space and comments");
-        reader.report(&whole, problem.help(format!("write what would stand behind `{name}:` in a scene")));
-        return Err(reader.problems);
-    }
-    let value = reader.complete(&whole, registration, name);
+    let file = read_text(path, COMPONENT, true).map_err(|problem| vec![*problem])?;
+    let mut reader = Reader::new(registry, file);
+    let value = reader.whole_file(registration, registration.type_info().type_path_table().short_path());
     let has_errors = reader.problems.iter().any(|problem| problem.severity == Severity::Error);
     value.filter(|_| !has_errors).ok_or(reader.problems)
+}
+
+impl Reader<'_> {
+    /// Reads the component `name` that is all that the file holds.
+    pub fn whole_file(&mut self, registration: &TypeRegistration, name: &str) -> Option<Box<dyn Reflect>> {
+        let file = self.file.clone();
+        let whole = Part::whole(file.text()).trimmed();
+        if whole.text.is_empty() {
+            let problem = Problem::error("the file is empty").label("nothing but white space and comments");
+            self.report(&whole, problem.help(format!("write what would stand behind `{name}:` in a scene")));
+            return None;
+        }
+        let value = self.complete(&whole, registration, name);
+        if value.is_none()
+            && let Some(problem) = stranger(&file, COMPONENT)
+        {
+            self.problems.clear();
+            self.report(&whole, problem);
+        }
+        value
+    }
 }

@@ -6,9 +6,9 @@ use super::frame::Frame;
 use super::loader;
 use super::problem::{Place, Problem, Severity, SourceFile};
 use super::references::references;
-use crate::components::SceneSettings;
+use crate::components::{AssetPath, SceneSettings};
 use crate::sources::trail::{self, Trail};
-use bevy_reflect::{Reflect, TypeRegistry};
+use bevy_reflect::{PartialReflect, Reflect, ReflectRef, TypeRegistry};
 use std::any::TypeId;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -226,6 +226,16 @@ impl SceneDocument {
         self.sources.get(path).map(Arc::as_ref)
     }
 
+    /// The files that values of its components name: meshes, volumes and others.
+    pub(crate) fn paths(&self) -> impl Iterator<Item = &Path> {
+        let values = self.entities.iter().flat_map(|entity| entity.components.iter());
+        values.flat_map(|component| {
+            let mut paths = Vec::new();
+            paths_in(component.value.as_partial_reflect(), &mut paths);
+            paths
+        })
+    }
+
     /// Whether anything keeps the scene from being shown.
     pub fn has_errors(&self) -> bool {
         self.problems.iter().any(|problem| problem.severity == Severity::Error)
@@ -239,6 +249,21 @@ impl SceneDocument {
     /// Where a field of the head stands; `""` is the head itself.
     pub(super) fn head_place(&self, field: &str) -> Option<&Place> {
         self.head.get(field)
+    }
+}
+
+fn paths_in<'v>(value: &'v dyn PartialReflect, paths: &mut Vec<&'v Path>) {
+    if let Some(path) = value.try_downcast_ref::<AssetPath>() {
+        return paths.push(path.path());
+    }
+    let mut within = |inner: &'v dyn PartialReflect| paths_in(inner, paths);
+    match value.reflect_ref() {
+        ReflectRef::Struct(fields) => fields.iter_fields().for_each(|(_, field)| within(field)),
+        ReflectRef::TupleStruct(fields) => fields.iter_fields().for_each(within),
+        ReflectRef::Tuple(fields) => fields.iter_fields().for_each(within),
+        ReflectRef::List(list) => list.iter().for_each(within),
+        ReflectRef::Enum(fields) => fields.iter_fields().for_each(|field| within(field.value())),
+        _ => {}
     }
 }
 

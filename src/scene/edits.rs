@@ -28,7 +28,7 @@ pub use conflict::{Conflict, Side, Version};
 pub use error::{EditError, SaveError};
 
 use super::document::{Override, SceneDocument};
-use super::problem::Problem;
+use super::problem::{Problem, SourceFile};
 use super::reconcile::{SceneEntities, reconcile, reconcile_after};
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::AppTypeRegistry;
@@ -36,6 +36,7 @@ use bevy_reflect::TypeRegistry;
 use change::{Change, Direction, Scene};
 use draft::Draft;
 use history::History;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -152,6 +153,39 @@ impl Edits {
     /// The scene as it is shown, edits included. Places in it are those in the texts that would be saved.
     pub fn document(&self) -> &SceneDocument {
         &self.document
+    }
+
+    /// The files that edits have changed, with the texts that would be saved.
+    pub(crate) fn unsaved_files(&self) -> Vec<Arc<SourceFile>> {
+        let is_changed = |file: &&Arc<SourceFile>| {
+            let before = self.base.sources.get(file.path());
+            before.is_none_or(|before| !Arc::ptr_eq(before, file) && before.text() != file.text())
+        };
+        self.document.sources.values().filter(is_changed).cloned().collect()
+    }
+
+    /// Takes what texts of the scene's files say, which were to be saved once, as edits that are not saved, in the place of others.
+    ///
+    /// # Errors
+    ///
+    /// If the scene that they make has errors.
+    pub(crate) fn take_back(
+        &mut self,
+        world: &mut World,
+        texts: HashMap<PathBuf, String>,
+    ) -> Result<(), EditError> {
+        let registry = registry_of(world);
+        let registry = registry.read();
+        let document = self.base.with_texts(&registry, texts, &self.base);
+        if document.has_errors() {
+            return Err(EditError::Invalid(document.problems));
+        }
+        let draft = rebase::difference(&self.base, &document, &registry)?;
+        let (draft, document) = self.read(&registry, draft)?;
+        self.draft = draft;
+        let last = std::mem::replace(&mut self.document, document);
+        reconcile_after(world, &self.document, Some(&last));
+        Ok(())
     }
 
     /// Makes the world's scene this one.

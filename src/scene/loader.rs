@@ -3,15 +3,19 @@
 use super::document::{Details, Position, SETTINGS, SceneComponent, SceneDocument, SceneEntity, identity};
 use super::edit;
 use super::frame::Frame;
-use super::names::{nearest_file, suggestion};
+use super::names::suggestion;
 use super::parts::{Named, Part};
 use super::problem::{Place, Problem, SourceFile};
 use super::reader::{Allowed, Reader};
+use super::text::{COMPONENT, SCENE, read_text, stranger};
+use super::wanted::excerpt;
 use crate::components::{AssetPath, SceneSettings};
-use crate::sources::trail;
+use crate::plain::piece;
+use crate::whole_file::folder_of;
 use bevy_ecs::reflect::ReflectComponent;
 use bevy_reflect::{Reflect, TypeInfo, TypeRegistration, TypeRegistry, structs::Struct};
 use std::any::TypeId;
+use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -29,13 +33,20 @@ pub(super) fn load(
         last,
         document: SceneDocument::default(),
         settings: SceneSettings::default(),
+        path,
+        home: identity(&folder_of(path)),
         read: HashMap::new(),
         fetched: HashMap::new(),
         included: HashSet::new(),
+        chain: Vec::new(),
+        known: OnceCell::new(),
+        told: HashSet::new(),
+        broken: HashSet::new(),
     };
     loader.included.insert(identity(path));
     loader.file(path, None, true);
     let mut document = loader.document;
+    document.problems.iter_mut().for_each(Problem::conceal);
     document.settings = loader.settings;
     document.sources = loader.read.into_iter().filter_map(|(path, file)| Some((path, file?))).collect();
     document
@@ -49,18 +60,41 @@ struct Loader<'a> {
     last: Option<&'a SceneDocument>,
     document: SceneDocument,
     settings: SceneSettings,
+    /// The scene, and the folder that it is in.
+    path: &'a Path,
+    home: PathBuf,
     /// Every file tried so far, and its text if it has one: what several entities share is read, and reported, once.
     read: HashMap<PathBuf, Option<Arc<SourceFile>>>,
     /// Files that were looked into, but not used yet.
     fetched: HashMap<PathBuf, Result<Arc<SourceFile>, Box<Problem>>>,
     /// The scene and what it includes, by [`identity`].
     included: HashSet<PathBuf>,
+    /// The files that include each other down to the one that is being read.
+    chain: Vec<PathBuf>,
+    /// The names of all components, once one was asked for that is none.
+    known: OnceCell<Vec<&'static str>>,
+    /// What was reported of files that several entities share.
+    told: HashSet<(Option<Place>, String)>,
+    /// Files that hold no component of a type, which was reported.
+    broken: HashSet<(PathBuf, TypeId)>,
 }
+
+/// How deep files may include each other.
+const MOST_INCLUDES: usize = 64;
 
 impl<'a> Loader<'a> {
     /// Reads a scene file: the scene itself (`main`) or one that it includes.
     fn file(&mut self, path: &Path, named_at: Option<&Place>, main: bool) {
-        let Some(file) = self.text(path, named_at) else { return };
+        if self.chain.len() > MOST_INCLUDES {
+            let problem = Problem::error(format!(
+                "files include each other more than {MOST_INCLUDES} deep: {}",
+                self.links(path)
+            ));
+            let problem = problem.label("one too many").help("include them side by side in one file");
+            return self.document.problems.push(problem.at_maybe(named_at.cloned()));
+        }
+        let Some(file) = self.text(path, SCENE, named_at) else { return };
+        self.chain.push(path.to_owned());
         let mut reader = Reader::new(self.registry, file.clone());
         let frame = self.last.and_then(|last| last.frames.get(path)).and_then(|frame| frame.moved(&file));
         if let Some(frame) = frame
@@ -70,13 +104,24 @@ impl<'a> Loader<'a> {
             self.head(&mut reader, &whole, &fields, Some(entries), main);
             self.document.frames.insert(path.to_owned(), frame);
         } else {
-            self.new_file(&mut reader, &file, main);
+            self.new_file(&mut reader, &file, named_at, main);
         }
         self.document.problems.append(&mut reader.problems);
+        self.chain.pop();
+    }
+
+    /// The files that lead to one, as far as one may care to read.
+    fn links(&self, path: &Path) -> String {
+        let name =
+            |path: &Path| format!("`{}`", piece(&path.file_name().unwrap_or_default().to_string_lossy()));
+        let first = self.chain.iter().take(2).map(|path| name(path));
+        let last = self.chain.iter().rev().take(1).map(|path| name(path));
+        let all: Vec<String> = first.chain(["…".to_owned()]).chain(last).chain([name(path)]).collect();
+        all.join(" > ")
     }
 
     /// Takes a file apart.
-    fn new_file(&mut self, reader: &mut Reader, file: &SourceFile, main: bool) {
+    fn new_file(&mut self, reader: &mut Reader, file: &SourceFile, named_at: Option<&Place>, main: bool) {
         let whole = Part::whole(file.text()).trimmed();
         if whole.text.is_empty() {
             let problem = Problem::error("the file is empty").label("nothing but white space and comments");
@@ -85,7 +130,10 @@ impl<'a> Loader<'a> {
         // Parsed with what stands around it, so that nothing stands there unnoticed.
         match Part::whole(file.text()).fields() {
             Ok(fields) => self.head(reader, &whole, &fields, None, main),
-            Err(misfit) => reader.report_shape(&whole, misfit, "a scene `( entities: { … } )`"),
+            Err(misfit) => match stranger(file, SCENE) {
+                Some(problem) => reader.problems.push(problem.at_maybe(named_at.cloned())),
+                None => reader.report_shape(&whole, misfit, "a scene `( entities: { … } )`"),
+            },
         }
     }
 
@@ -101,9 +149,9 @@ impl<'a> Loader<'a> {
         if main {
             self.document.head.insert(String::new(), reader.place(whole));
         }
-        let mut seen: Vec<(&str, Place)> = Vec::new();
+        let mut seen: HashMap<&str, Place> = HashMap::new();
         for Named { name, value } in fields {
-            if let Some((_, first)) = seen.iter().find(|(seen, _)| *seen == name.text) {
+            if let Some(first) = seen.get(name.text) {
                 let other = Some((first.clone(), "first written here".into()));
                 let problem = Problem {
                     other,
@@ -112,7 +160,7 @@ impl<'a> Loader<'a> {
                 reader.report(name, problem);
                 continue;
             }
-            seen.push((name.text, reader.place(name)));
+            seen.insert(name.text, reader.place(name));
             if name.text != "entities" {
                 self.head_field(reader, name, value, main);
                 continue;
@@ -196,7 +244,7 @@ impl<'a> Loader<'a> {
             match entry.name.read(std::marker::PhantomData::<String>) {
                 Ok(text) => named.push((text, entry)),
                 Err(_) => {
-                    let text = entry.name.text;
+                    let text = excerpt(entry.name.text);
                     let problem = Problem::error(format!("expected a name in quotes, found `{text}`"));
                     reader.report(&entry.name, problem.help(format!("write `\"{text}\"`")));
                 }
@@ -214,8 +262,9 @@ impl<'a> Loader<'a> {
             if let Some(first) = self.document.entity(&name) {
                 let elsewhere = first.place.to_string();
                 let other = Some((first.place.clone(), "first here".into()));
-                let problem =
-                    Problem::error(format!("two entities are called `{name}`")).label("again here").at(place);
+                let problem = Problem::error(format!("two entities are called `{}`", piece(&name)))
+                    .label("again here")
+                    .at(place);
                 reader.problems.push(Problem {
                     other,
                     ..problem.help(format!("the first stands at {elsewhere}; a name is an identity"))
@@ -241,7 +290,7 @@ impl<'a> Loader<'a> {
             return None;
         }
         for file in &before.details.files {
-            self.text(file.path(), Some(place));
+            self.text(file.path(), COMPONENT, Some(place));
         }
         Some(SceneEntity { place: place.clone(), bytes: part.bytes(), ..before.clone() })
     }
@@ -251,7 +300,7 @@ impl<'a> Loader<'a> {
         if let Some(file) = self.read.get(path) {
             return file.as_ref().is_some_and(|file| Arc::ptr_eq(file, before));
         }
-        let fetched = self.fetch(path);
+        let fetched = self.fetch(path, COMPONENT);
         let is_same = fetched.as_ref().is_ok_and(|file| Arc::ptr_eq(file, before));
         self.fetched.insert(path.to_owned(), fetched);
         is_same
@@ -263,18 +312,20 @@ impl<'a> Loader<'a> {
         reader.places.clear();
         let mut details = Details::default();
         let bytes = part.bytes();
-        let components = match part.fields() {
+        let (components, written) = match part.fields() {
             Ok(fields) => {
+                let written = fields.len();
                 let components = self.components(reader, &name, fields, &mut details);
                 reader.places.push((String::new(), reader.place(part)));
-                components
+                (components, written)
             }
             Err(misfit) => {
                 reader.report_shape(part, misfit, "components `( Name: value, … )`");
-                Vec::new()
+                (Vec::new(), 0)
             }
         };
-        details.is_sound = reader.problems.len() == before;
+        // What is wrong with a file that entities share is reported once, and yet none of them is sound.
+        details.is_sound = reader.problems.len() == before && components.len() == written;
         let position = |place: Place| {
             let is_within = bytes.start <= place.bytes.start && place.bytes.end <= bytes.end;
             match Arc::ptr_eq(&place.file, &reader.file) && is_within {
@@ -300,7 +351,7 @@ impl<'a> Loader<'a> {
             let type_id = registration.type_id();
             if components.iter().any(|component| component.type_id == type_id) {
                 let other = names.get(name.text).map(|first| (first.clone(), "first written here".into()));
-                let message = format!("`{}` is written twice on `{entity}`", name.text);
+                let message = format!("`{}` is written twice on `{}`", name.text, piece(entity));
                 let problem = Problem { other, ..Problem::error(message).label("again here") };
                 reader.report(&name, problem);
                 continue;
@@ -330,21 +381,19 @@ impl<'a> Loader<'a> {
         let path_type = self.registry.get(TypeId::of::<AssetPath>())?;
         let path = reader.value_at(name, &path_part, path_type, Allowed::default())?;
         let path = path.try_downcast_ref::<AssetPath>()?.path().to_owned();
-        let file = self.text(&path, Some(&reader.place(&path_part)))?;
+        let file = self.text(&path, COMPONENT, Some(&reader.place(&path_part)))?;
         files.push(file.clone());
-        let mut own = Reader::new(self.registry, file.clone());
-        let whole = Part::whole(file.text()).trimmed();
-        if whole.text.is_empty() {
-            let problem = Problem::error("the file is empty").label("nothing but white space and comments");
-            own.report(&whole, problem.help(format!("write what would stand behind `{name}:` in a scene")));
+        if self.broken.contains(&(path.clone(), registration.type_id())) {
+            return None;
         }
-        let value = if whole.text.is_empty() { None } else { own.complete(&whole, registration, name) };
+        let mut own = Reader::new(self.registry, file.clone());
+        let value = own.whole_file(registration, name);
         reader.places.append(&mut own.places);
-        // What several entities share is reported once.
-        own.problems.retain(|problem| {
-            let known = self.document.problems.iter().chain(&reader.problems);
-            !known.into_iter().any(|other| other.is_same(problem))
-        });
+        if value.is_none() {
+            self.broken.insert((path, registration.type_id()));
+        }
+        // What is read as components of several types is reported once.
+        own.problems.retain(|problem| self.told.insert((problem.place.clone(), problem.message.clone())));
         reader.problems.append(&mut own.problems);
         value
     }
@@ -356,28 +405,23 @@ impl<'a> Loader<'a> {
         {
             return Some(registration);
         }
-        let components =
-            self.registry.iter().filter(|registration| registration.data::<ReflectComponent>().is_some());
-        let mut known: Vec<_> =
-            components.map(|registration| registration.type_info().type_path_table().short_path()).collect();
-        known.sort_unstable();
         let problem = if self.registry.is_ambiguous(name.text) {
             Problem::error(format!("more than one plugin has a component `{}`", name.text)).label("ambiguous")
         } else {
             Problem::error(format!("there is no component `{}`", name.text))
                 .label("unknown component")
-                .help(suggestion(name.text, &known))
+                .help(suggestion(name.text, self.known.get_or_init(|| components(self.registry))))
         };
         reader.report(name, problem);
         None
     }
 
-    fn text(&mut self, path: &Path, named_at: Option<&Place>) -> Option<Arc<SourceFile>> {
+    fn text(&mut self, path: &Path, wanted: &str, named_at: Option<&Place>) -> Option<Arc<SourceFile>> {
         if let Some(file) = self.read.get(path) {
             return file.clone();
         }
         self.document.files.push(path.to_owned());
-        let read = self.fetched.remove(path).unwrap_or_else(|| self.fetch(path));
+        let read = self.fetched.remove(path).unwrap_or_else(|| self.fetch(path, wanted));
         let file = read
             .map_err(|problem| {
                 let place = problem.place.clone().or(named_at.cloned());
@@ -389,54 +433,30 @@ impl<'a> Loader<'a> {
     }
 
     /// The text of a file; the same as before where it says the same, so that places in it are the same too.
-    fn fetch(&self, path: &Path) -> Result<Arc<SourceFile>, Box<Problem>> {
+    fn fetch(&self, path: &Path, wanted: &str) -> Result<Arc<SourceFile>, Box<Problem>> {
+        let is_seen = self.is_seen(path);
         let file = match self.texts.get(path) {
-            Some(text) => SourceFile::new(path, text.as_str()),
-            None => read_text(path)?,
+            Some(text) if is_seen => SourceFile::new(path, text.as_str()),
+            Some(text) => SourceFile::unseen(path, text.as_str()),
+            None => read_text(path, wanted, is_seen)?,
         };
         let before = self.last.and_then(|last| last.sources.get(path));
-        Ok(before.filter(|before| before.text() == file.text()).cloned().unwrap_or(file))
+        let is_same =
+            |before: &&Arc<SourceFile>| before.text() == file.text() && before.is_shown() == file.is_shown();
+        Ok(before.filter(is_same).cloned().unwrap_or(file))
+    }
+
+    /// Whether problems of a file are shown with its text: a scene from elsewhere can name any file, but only its own are its affair.
+    fn is_seen(&self, path: &Path) -> bool {
+        path == self.path || identity(path).starts_with(&self.home)
     }
 }
 
-/// A scene is written by hand; what is larger is not one.
-const MAX_SCENE_BYTES: u64 = 64 << 20;
-
-pub(super) fn read_text(path: &Path) -> Result<Arc<SourceFile>, Box<Problem>> {
-    use std::io::Read;
-    let unreadable = |error: std::io::Error| {
-        Box::new(match error.kind() {
-            std::io::ErrorKind::NotFound => {
-                let help = nearest_file(path)
-                    .map_or("check the path and the folder it is relative to".into(), |near| {
-                        format!("did you mean `{near}`?")
-                    });
-                Problem::error(format!("there is no file {}", path.display())).help(help)
-            }
-            _ => Problem::error(format!("cannot read {}: {error}", path.display())),
-        })
-    };
-    // Asked before opening: opening a pipe waits for its writer.
-    trail::note(path);
-    if std::fs::metadata(path).map_err(unreadable)?.is_dir() {
-        let problem = Problem::error(format!("{} is a folder", path.display()));
-        return Err(Box::new(problem.help("name a file in it")));
-    }
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(unreadable)?;
-    file.take(MAX_SCENE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > MAX_SCENE_BYTES {
-        return Err(Box::new(Problem::error(format!(
-            "{} is longer than {MAX_SCENE_BYTES} bytes: is it a scene?",
-            path.display()
-        ))));
-    }
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let start = error.utf8_error().valid_up_to();
-        let file = SourceFile::new(path, String::from_utf8_lossy(error.as_bytes()).as_ref());
-        let bytes = start..start + char::REPLACEMENT_CHARACTER.len_utf8();
-        let problem = Problem::error(format!("{} is not UTF-8 text", path.display()));
-        Box::new(problem.label("not UTF-8").help("save it as UTF-8").at(Place { file, bytes }))
-    })?;
-    Ok(SourceFile::new(path, text))
+/// The names of all components, in the order of the alphabet.
+fn components(registry: &TypeRegistry) -> Vec<&'static str> {
+    let components = registry.iter().filter(|registration| registration.data::<ReflectComponent>().is_some());
+    let mut known: Vec<_> =
+        components.map(|registration| registration.type_info().type_path_table().short_path()).collect();
+    known.sort_unstable();
+    known
 }

@@ -1,12 +1,20 @@
 //! Finding what a misspelt name was meant to be.
 
+use crate::plain::piece;
 use std::path::Path;
+
+/// Bytes of a name that may be misspelt; nobody types more.
+const LONGEST: usize = 256;
 
 /// The candidate nearest to `name`, if one is near enough to be meant.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    if name.len() > LONGEST {
+        return None;
+    }
     let wanted = name.to_lowercase();
     candidates
         .into_iter()
+        .filter(|candidate| candidate.len() <= LONGEST)
         .map(|candidate| (strsim::damerau_levenshtein(&wanted, &candidate.to_lowercase()), candidate))
         .filter(|(distance, candidate)| *distance <= 1 + candidate.chars().count() / 3)
         .min_by_key(|(distance, _)| *distance)
@@ -26,7 +34,7 @@ pub(super) fn nearest_file(path: &Path) -> Option<String> {
 /// "did you mean `x`?" where something is near, else the list of all that would do.
 pub(super) fn suggestion(name: &str, candidates: &[&str]) -> String {
     match nearest(name, candidates.iter().copied()) {
-        Some(near) => format!("did you mean `{near}`?"),
+        Some(near) => format!("did you mean `{}`?", piece(near)),
         None if candidates.is_empty() => "nothing is known here".into(),
         None => format!("known here: {}", candidates.join(", ")),
     }
@@ -41,5 +49,9 @@ mod tests {
         assert_eq!(nearest("difuse", ["ambient", "diffuse"]), Some("diffuse"));
         assert_eq!(nearest("phong", ["Phong", "Mesh"]), Some("Phong"));
         assert_eq!(nearest("sigma", ["ambient", "diffuse"]), None);
+        // Comparing them would take more memory than there is.
+        let endless = "a".repeat(1 << 26);
+        assert_eq!(nearest(&endless, [endless.as_str(), "diffuse"]), None);
+        assert_eq!(nearest("difuse", [endless.as_str(), "diffuse"]), Some("diffuse"));
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! What comes of it is a text like any other, so that it can be read, edited and saved, and shows how scenes are written.
 
-use super::loader::read_text;
+use super::text::{SCENE, read_text};
 use super::tokens::tokens;
 use super::write::quoted;
 use crate::sources::{self, Kind};
@@ -120,7 +120,7 @@ impl Around {
     fn read(scene: &Path, taken: &mut BTreeSet<String>) -> Result<Self, OfFilesError> {
         let nothing = || OfFilesError::NoEntities { path: scene.to_owned() };
         let unreadable = |problem: Box<super::Problem>| OfFilesError::Unreadable { message: problem.message };
-        let file = read_text(scene).map_err(unreadable)?;
+        let file = read_text(scene, SCENE, true).map_err(unreadable)?;
         let text = file.text();
         let mut open = Vec::new();
         let mut entities = None;

@@ -4,7 +4,7 @@
 //! the place of a part is the difference of two addresses. Each part can then be read as the type that its place in the scene asks
 //! for, and a mistake in one of them does not hide those in the others.
 
-use super::problem::Place;
+use super::problem::{BYTE_ORDER_MARK, Place};
 use super::tokens::{tokens, unbalanced, without_comments_around};
 use ron::value::RawValue;
 use serde::de::{
@@ -60,9 +60,9 @@ pub(super) struct Misfit {
 }
 
 impl<'a> Part<'a> {
-    /// The whole text of a file.
+    /// The whole text of a file, without the byte order mark that editors put in front of it.
     pub fn whole(text: &'a str) -> Self {
-        Self { whole: text, text }
+        Self { whole: text, text: text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text) }
     }
 
     /// The part at these bytes of a file.
@@ -370,6 +370,17 @@ impl<'de> Visitor<'de> for Identifier {
     }
 }
 
+/// Parts that a bracket may hold.
+const MOST_PARTS: usize = 1_000_000;
+
+/// An error where there are as many parts already as there may be: each takes several times the memory of its text.
+fn room<E: serde::de::Error>(parts: usize) -> Result<(), E> {
+    match parts < MOST_PARTS {
+        true => Ok(()),
+        false => Err(E::custom(format_args!("expected at most {MOST_PARTS} parts in a bracket, found more"))),
+    }
+}
+
 impl<'de> Visitor<'de> for FieldsVisitor {
     type Value = Vec<(&'de str, &'de str)>;
 
@@ -380,6 +391,7 @@ impl<'de> Visitor<'de> for FieldsVisitor {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
         let mut fields = Vec::new();
         while let Some(name) = map.next_key_seed(Identifier)? {
+            room(fields.len())?;
             fields.push((name, map.next_value::<&RawValue>()?.get_ron()));
         }
         Ok(fields)
@@ -396,6 +408,7 @@ impl<'de> Visitor<'de> for EntriesVisitor {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
         let mut entries = Vec::new();
         while let Some(key) = map.next_key::<&RawValue>()? {
+            room(entries.len())?;
             entries.push((key.get_ron(), map.next_value::<&RawValue>()?.get_ron()));
         }
         Ok(entries)
@@ -412,6 +425,7 @@ impl<'de> Visitor<'de> for ValuesVisitor {
     fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
         let mut values = Vec::new();
         while let Some(value) = seq.next_element::<&RawValue>()? {
+            room(values.len())?;
             values.push(value.get_ron());
         }
         Ok(values)

@@ -5,6 +5,7 @@ use super::parts::{Misfit, Named, Part, Payload, Shape};
 use super::problem::{Place, Problem, SourceFile};
 use super::wanted::{excerpt, how_to_write, is_led, is_plain, numbers, shorthand, wanted};
 use crate::components::{AssetPath, Names, Range, ReflectValidate, Required, Untagged};
+use crate::plain::piece;
 use bevy_reflect::attributes::CustomAttributes;
 use bevy_reflect::enums::{DynamicEnum, DynamicVariant, EnumInfo, VariantInfo};
 use bevy_reflect::list::DynamicList;
@@ -17,6 +18,7 @@ use bevy_reflect::{
     TypeRegistry,
 };
 use std::any::TypeId;
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -30,7 +32,15 @@ pub(super) struct Reader<'r> {
     pub places: Vec<(String, Place)>,
     /// Path of the value being read.
     path: String,
+    /// How many values may still be read.
+    left: usize,
 }
+
+/// Problems that are kept of a file. Nobody reads as many, and memory has an end.
+const MOST_PROBLEMS: usize = 100_000;
+
+/// Values that a file may hold: each takes many times the memory of its text.
+const MOST_VALUES: usize = 1_000_000;
 
 /// What a field allows, by its attributes, of the numbers and texts in it.
 #[derive(Clone, Copy, Default)]
@@ -54,7 +64,14 @@ type Value = Option<Box<dyn PartialReflect>>;
 
 impl<'r> Reader<'r> {
     pub fn new(registry: &'r TypeRegistry, file: Arc<SourceFile>) -> Self {
-        Self { registry, file, problems: Vec::new(), places: Vec::new(), path: String::new() }
+        Self {
+            registry,
+            file,
+            problems: Vec::new(),
+            places: Vec::new(),
+            path: String::new(),
+            left: MOST_VALUES,
+        }
     }
 
     pub fn place(&self, part: &Part) -> Place {
@@ -63,14 +80,26 @@ impl<'r> Reader<'r> {
 
     pub fn report(&mut self, part: &Part, problem: Problem) {
         let place = self.place(part);
-        self.problems.push(problem.at(place));
+        self.keep(problem.at(place));
+    }
+
+    fn keep(&mut self, problem: Problem) {
+        match self.problems.len() {
+            0..MOST_PROBLEMS => self.problems.push(problem),
+            MOST_PROBLEMS => {
+                let message = format!("{MOST_PROBLEMS} problems were found so far; more are not told");
+                self.problems.push(Problem { message, help: None, ..problem });
+            }
+            _ => {}
+        }
     }
 
     pub fn report_misfit(&mut self, misfit: Misfit) {
         let place = |bytes| Place { file: self.file.clone(), bytes };
         let other = misfit.other.map(|(bytes, label)| (place(bytes), label));
         let problem = Problem { help: misfit.help, other, ..Problem::error(misfit.message) };
-        self.problems.push(problem.at(place(misfit.bytes)));
+        let problem = problem.at(place(misfit.bytes));
+        self.keep(problem);
     }
 
     /// What has another shape than `expected`.
@@ -121,6 +150,17 @@ impl<'r> Reader<'r> {
 
     /// Reads one value of a registered type. `allowed` is what the field that it stands in allows.
     pub fn value(&mut self, part: &Part, registration: &TypeRegistration, allowed: Allowed) -> Value {
+        if self.left <= 1 {
+            if self.left == 1 {
+                self.left = 0;
+                let problem = Problem::error(format!("the file holds more than {MOST_VALUES} values"));
+                let problem = problem.label("one too many");
+                self.report(part, problem.help("what is that large belongs in a mesh or a volume"));
+            }
+            return None;
+        }
+        self.left -= 1;
+        let first = self.places.len();
         self.places.push((self.path.clone(), self.place(part)));
         let before = self.problems.len();
         let value = match registration.type_info() {
@@ -169,7 +209,7 @@ impl<'r> Reader<'r> {
             _ => self.leaf(part, registration, allowed),
         };
         if self.problems.len() == before {
-            self.validate(part, registration, value.as_deref());
+            self.validate(part, registration, value.as_deref(), first);
         }
         value
     }
@@ -217,6 +257,7 @@ impl<'r> Reader<'r> {
             let known = format!("known here: {}", names.known.join(", "));
             let help = nearest(name, names.known.iter().copied())
                 .map_or(known.clone(), |near| format!("did you mean `{near}`? {known}"));
+            let name = piece(name);
             let problem = Problem::error(format!("there is no {} `{name}`", names.of)).label("unknown name");
             self.report(part, problem.help(help));
             return None;
@@ -488,20 +529,30 @@ impl<'r> Reader<'r> {
         }
     }
 
-    fn validate(&mut self, part: &Part, registration: &TypeRegistration, value: Option<&dyn PartialReflect>) {
+    /// Has a value look at itself as a whole. The places in it are those from `first` on.
+    fn validate(
+        &mut self,
+        part: &Part,
+        registration: &TypeRegistration,
+        value: Option<&dyn PartialReflect>,
+        first: usize,
+    ) {
         let (Some(validate), Some(from_reflect), Some(value)) =
             (registration.data::<ReflectValidate>(), registration.data::<ReflectFromReflect>(), value)
         else {
             return;
         };
         let Some(whole) = from_reflect.from_reflect(value) else { return };
-        for (field, message) in validate.get(whole.as_ref()).map(|value| value.problems()).unwrap_or_default()
-        {
-            let path = format!("{}.{field}", self.path);
-            let written =
-                self.places.iter().rev().find(|(place, _)| *place == path).map(|(_, place)| place.clone());
+        let found = validate.get(whole.as_ref()).map(|value| value.problems()).unwrap_or_default();
+        if found.is_empty() {
+            return;
+        }
+        let within = self.places[first..].iter();
+        let places: HashMap<String, Place> = within.cloned().collect();
+        for (field, message) in found {
+            let written = places.get(&format!("{}.{field}", self.path)).cloned();
             let place = written.unwrap_or_else(|| self.place(part));
-            self.problems.push(Problem::error(message).at(place));
+            self.keep(Problem::error(message).at(place));
         }
     }
 
@@ -537,4 +588,31 @@ fn enum_value(name: &str, variant: DynamicVariant, registration: &TypeRegistrati
     let mut value = DynamicEnum::new(name, variant);
     value.set_represented_type(Some(registration.type_info()));
     value
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::components::TransferFunction;
+
+    #[test]
+    fn what_is_larger_than_memory_bears_is_refused() {
+        let mut registry = TypeRegistry::new();
+        registry.register::<TransferFunction>();
+        let text = format!("(points: [{}])", "(0.0, (0.0, 0.0, 0.0), 0.0),".repeat(100));
+        let file = SourceFile::new("function.ron", text);
+        let registration = registry.get(TypeId::of::<TransferFunction>()).unwrap();
+        let read = |left: usize| {
+            let mut reader = Reader { left, ..Reader::new(&registry, file.clone()) };
+            let value = reader.complete(&Part::whole(file.text()), registration, "TransferFunction");
+            (
+                value.is_some(),
+                reader.problems.len(),
+                reader.problems.first().map(|problem| problem.message.clone()),
+            )
+        };
+        assert_eq!(read(1000), (true, 0, None));
+        let (is_read, problems, first) = read(50);
+        assert!(!is_read && problems == 1 && first.unwrap().contains("values"));
+    }
 }

@@ -1,6 +1,9 @@
 //! Why a file could not be read: who, what was expected, what was found, how to mend it.
 
-use std::{io, path::PathBuf};
+use std::{
+    fmt, io,
+    path::{Path, PathBuf},
+};
 
 use glam::Vec3;
 
@@ -11,10 +14,12 @@ use glam::Vec3;
 #[non_exhaustive]
 pub enum SourceError {
     /// The path leads nowhere.
-    #[error("{path}: no such file{}", mend_not_found(.near.as_deref()))]
+    #[error("{path}: no such file{}{}", .searched, mend_not_found(.near.as_deref(), .searched))]
     NotFound {
         /// The path asked for.
         path: PathBuf,
+        /// Where it was looked for, if the path alone does not say that.
+        searched: Searched,
         /// The file of that folder with the nearest name, if one is near.
         near: Option<String>,
     },
@@ -31,7 +36,7 @@ pub enum SourceError {
     NotAFile {
         /// The path asked for.
         path: PathBuf,
-        /// "a folder" or "a pipe, socket or device".
+        /// "a folder", "a pipe".
         found: &'static str,
     },
     /// More than a reader accepts.
@@ -206,10 +211,45 @@ pub enum LayoutError {
     },
 }
 
-fn mend_not_found(near: Option<&str>) -> String {
-    match near {
-        Some(name) => format!("; did you mean `{name}`?"),
-        None => "; check the path and the folder it is relative to".to_owned(),
+/// Where a file was looked for that is not there.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Searched {
+    /// Where its path, which begins at the root, says.
+    Absolute,
+    /// In this folder.
+    In(PathBuf),
+    /// In a folder that is not there either: the first of those on the way that is missing.
+    NoFolder(PathBuf),
+}
+
+impl Searched {
+    /// Where a path leads, seen from the folder that the program runs in.
+    pub(crate) fn of(path: &Path) -> Self {
+        let Ok(absolute) = std::path::absolute(path) else { return Self::Absolute };
+        let missing = absolute.ancestors().skip(1).take_while(|folder| !folder.exists()).last();
+        match (missing, absolute.parent()) {
+            (Some(missing), _) => Self::NoFolder(missing.to_owned()),
+            (None, Some(folder)) if path.is_relative() => Self::In(folder.to_owned()),
+            _ => Self::Absolute,
+        }
+    }
+}
+
+impl fmt::Display for Searched {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Absolute => Ok(()),
+            Self::In(folder) => write!(f, " in {}", folder.display()),
+            Self::NoFolder(missing) => write!(f, ": there is no folder {}", missing.display()),
+        }
+    }
+}
+
+fn mend_not_found(near: Option<&str>, searched: &Searched) -> String {
+    match (near, searched) {
+        (Some(name), _) => format!("; did you mean `{name}`?"),
+        (None, Searched::NoFolder(_)) => "; check the path".to_owned(),
+        (None, _) => "; check the path and the folder it is relative to".to_owned(),
     }
 }
 

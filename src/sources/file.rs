@@ -6,7 +6,8 @@ use std::{
     path::Path,
 };
 
-use super::{SourceError, trail};
+use super::{Searched, SourceError, trail};
+use crate::regular_file::{self, Unopened};
 
 /// Names less alike than this are not suggested (0 = nothing in common, 1 = equal).
 const NEAR_ENOUGH: f64 = 0.6;
@@ -20,19 +21,20 @@ pub(super) fn open(path: &Path) -> Result<(File, u64), SourceError> {
     let metadata = fs::metadata(path);
     trail::note_metadata(path, &metadata);
     let metadata = metadata.map_err(|cause| io_error(path, cause))?;
-    if !metadata.is_file() {
-        let found = if metadata.is_dir() { "a folder" } else { "a pipe, socket or device" };
-        return Err(SourceError::NotAFile { path: path.to_owned(), found });
-    }
-    let file = File::open(path).map_err(|cause| io_error(path, cause))?;
-    Ok((file, metadata.len()))
+    let opened = regular_file::open_known(path, &metadata);
+    opened.map(|(file, metadata)| (file, metadata.len())).map_err(|error| match error {
+        Unopened::NotAFile(found) => SourceError::NotAFile { path: path.to_owned(), found },
+        Unopened::Io(cause) => io_error(path, cause),
+    })
 }
 
 /// The error for `path`; a missing file gets the nearest name of its folder.
 pub(super) fn io_error(path: &Path, cause: io::Error) -> SourceError {
     let path = path.to_owned();
     match cause.kind() {
-        io::ErrorKind::NotFound => SourceError::NotFound { near: nearest_name(&path), path },
+        io::ErrorKind::NotFound => {
+            SourceError::NotFound { near: nearest_name(&path), searched: Searched::of(&path), path }
+        }
         _ => SourceError::Io { path, cause },
     }
 }

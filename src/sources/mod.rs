@@ -19,6 +19,7 @@ mod pieces;
 pub mod procedural;
 pub mod raw;
 pub mod recognise;
+pub(crate) mod seems;
 pub mod self_describing;
 mod shape;
 mod stored;
@@ -28,7 +29,7 @@ pub mod trail;
 pub mod volume;
 mod vtk;
 
-pub use error::{LayoutError, SourceError};
+pub use error::{LayoutError, Searched, SourceError};
 pub use mesh::{MeshData, MeshMaterial, MeshPart, MeshStatistics, MeshSubsurface, TextureImage};
 pub use obj::read_obj;
 pub use raw::{RawLayout, read_raw};

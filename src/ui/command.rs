@@ -54,12 +54,17 @@ pub enum Command {
     SaveAndQuit,
     /// To close the window, whatever is not saved.
     Discard,
+    /// To take back edits that an earlier run could not save.
+    Recover,
+    /// To delete them.
+    ForgetRecovered,
 }
 
 impl Command {
     /// Whether it is about what was changed in the scene, or may be lost.
     pub(crate) fn concerns_edits(&self) -> bool {
-        matches!(self, Self::Undo | Self::Redo) || self.concerns_files()
+        matches!(self, Self::Undo | Self::Redo | Self::Recover | Self::ForgetRecovered)
+            || self.concerns_files()
     }
 
     /// Whether it is about the files of the scene, or about leaving them.

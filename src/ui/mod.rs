@@ -22,6 +22,7 @@ mod opening;
 mod panels;
 mod picture;
 mod problems;
+mod recovered;
 mod report;
 mod rows;
 mod sections;
@@ -43,6 +44,7 @@ pub(crate) use opening::Chooser;
 pub use opening::Recent;
 pub use panels::{Laid, panels};
 pub use problems::SceneProblems;
+pub use recovered::Recovered;
 pub use sections::{Section, Sections};
 pub use state::{LastReload, OpenPanels, Selection, Shown, Totals, init};
 pub use transfer_function::{

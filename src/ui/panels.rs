@@ -1,8 +1,8 @@
 //! Where everything stands.
 
 use super::{
-    Command, OpenPanels, Shown, conflicts, entities, leaving, log, opening, picture, report, sections,
-    shortcuts, status, toolbar,
+    Command, OpenPanels, Shown, conflicts, entities, leaving, log, opening, picture, recovered, report,
+    sections, shortcuts, status, toolbar,
 };
 use bevy_ecs::prelude::*;
 use egui::{CentralPanel, Panel, Rect, Ui};
@@ -47,6 +47,7 @@ pub fn panels(ui: &mut Ui, world: &mut World, shown: &Shown) -> Laid {
     let centre =
         CentralPanel::no_frame().show(ui, |ui| picture::show(ui, world, shown, open.axes, &mut commands));
     opening::show(ui, world, &mut commands);
+    recovered::show(ui, world, &mut commands);
     leaving::show(ui, world, &mut commands);
     Laid { picture: centre.inner, commands }
 }

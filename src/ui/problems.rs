@@ -1,7 +1,7 @@
 //! The problems of the scene, by the entities that have them.
 
 use super::log::{Level, colour};
-use crate::scene::{Problem, Severity};
+use crate::scene::{MOST_TOLD, Problem, Severity, more};
 use bevy_ecs::prelude::*;
 use egui::Ui;
 use std::collections::HashMap;
@@ -54,18 +54,21 @@ impl SceneProblems {
 
 /// Problems, each with its place and what to do about it.
 pub(super) fn list(ui: &mut Ui, problems: &[Problem]) {
-    for problem in problems {
+    for problem in problems.iter().take(MOST_TOLD) {
         let level = match problem.severity {
             Severity::Error => Level::Error,
             Severity::Note => Level::Warning,
         };
-        ui.colored_label(colour(ui, level), &problem.message);
+        ui.colored_label(colour(ui, level), problem.shown_message());
         if let Some(place) = &problem.place {
             ui.weak(place.to_string());
         }
-        if let Some(help) = &problem.help {
+        if let Some(help) = problem.shown_help() {
             ui.label(help);
         }
         ui.add_space(4.0);
+    }
+    if let Some(more) = more(problems.len()) {
+        ui.label(more);
     }
 }

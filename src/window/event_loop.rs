@@ -1,6 +1,7 @@
 //! The window itself: events in, frames out.
 
 use super::memory::Remembered;
+use super::recovery;
 use super::surface::{Next, WindowSurface};
 use super::{Painter, Session, SessionOptions, WindowError};
 use crate::gpu::{Gpu, GpuOptions};
@@ -37,10 +38,14 @@ pub fn run(app: App, options: WindowOptions) -> Result<(), WindowError> {
     let mut program =
         Program { proxy: events.create_proxy(), start: Some((app, options)), open: None, failure: None };
     let ended = events.run_app(&mut program);
-    match program.failure {
+    let ended = match program.failure {
         Some(failure) => Err(failure),
         None => ended.map_err(|error| WindowError::NoDisplay(error.to_string())),
+    };
+    if ended.is_err() {
+        recovery::keep_unsaved();
     }
+    ended
 }
 
 /// The event loop, which a library that is missing makes panic instead of fail.
@@ -161,6 +166,8 @@ impl ApplicationHandler<Wake> for Program {
 impl Program {
     fn end(&mut self, events: &ActiveEventLoop, failure: WindowError) {
         self.failure = Some(failure);
+        // Nobody was asked what is to become of it.
+        recovery::keep_unsaved();
         events.exit();
     }
 }

@@ -1,6 +1,8 @@
 //! What a window was like when it was last closed.
 
+use crate::regular_file::{self, Unopened};
 use crate::ui::{OpenPanels, Recent};
+use crate::whole_file;
 use etcetera::{AppStrategy, AppStrategyArgs};
 use serde::{Deserialize, Serialize};
 use std::io::{self, ErrorKind};
@@ -58,9 +60,7 @@ impl Remembered {
         let folder = path.parent().unwrap_or(Path::new("."));
         std::fs::create_dir_all(folder)?;
         // Two windows may be closed at once: whoever reads finds one of them whole.
-        let mut file = tempfile::Builder::new().prefix(".window-").tempfile_in(folder)?;
-        io::Write::write_all(&mut file, text.as_bytes())?;
-        file.persist(path).map(drop).map_err(|error| error.error)
+        whole_file::write(path, text.as_bytes())
     }
 
     fn sensible(mut self) -> Self {
@@ -70,10 +70,12 @@ impl Remembered {
 }
 
 fn read(path: &Path) -> io::Result<String> {
-    if std::fs::metadata(path)?.len() > LONGEST {
-        return Err(io::Error::other("it is too long to be one"));
+    match regular_file::read(path, LONGEST) {
+        Ok(bytes) if bytes.len() as u64 > LONGEST => Err(io::Error::other("it is too long to be one")),
+        Ok(bytes) => String::from_utf8(bytes).map_err(io::Error::other),
+        Err(Unopened::NotAFile(found)) => Err(io::Error::other(format!("it is {found}"))),
+        Err(Unopened::Io(error)) => Err(error),
     }
-    std::fs::read_to_string(path)
 }
 
 fn complaint(path: &Path, error: &dyn std::fmt::Display) -> String {

@@ -7,12 +7,14 @@ use super::edits;
 use super::files::{problems, told};
 use super::orbit::Orbit;
 use super::pace::Pace;
+use super::recovery::{self, Unsaved};
 use super::stale::Drawn;
 use crate::gpu::Gpu;
 use crate::passes::tonemap::Tonemap;
+use crate::plain;
 use crate::render::replace_device;
 use crate::report::Report;
-use crate::scene::{LiveScene, Problem, Reload, Wake};
+use crate::scene::{Edits, LiveScene, MOST_TOLD, Problem, Reload, Wake, more};
 use crate::ui::{self, Command, Laid, Leaving, Level, Log, PictureFile, Shown};
 use crate::view::{FreeCamera, Picture, SceneBounds, View, bounds_of};
 use bevy_app::App;
@@ -70,6 +72,7 @@ pub struct Session {
     then: Leaving,
     /// The file that is replaced if it is asked for once more.
     replaceable: Option<PathBuf>,
+    unsaved: Arc<Unsaved>,
 }
 
 /// What came of a frame.
@@ -117,10 +120,24 @@ impl Session {
             wake: None,
             then: Leaving::No,
             replaceable: None,
+            unsaved: Arc::default(),
         };
         session.follow_scene();
         session.tell_problems();
+        session.offer_recovered();
         session
+    }
+
+    /// Offers edits that an earlier run could not save.
+    fn offer_recovered(&mut self) {
+        let recovered = recovery::find(self.scene.document().files.iter().map(PathBuf::as_path));
+        for (_, kept) in &recovered.0 {
+            let message =
+                format!("edits of an earlier run that were not saved are kept in {}", kept.display());
+            log::warn!("{message}");
+            self.log.tell(Level::Warning, plain::line(&message));
+        }
+        self.app.insert_resource(recovered);
     }
 
     /// The world that is shown.
@@ -155,6 +172,10 @@ impl Session {
 
     /// Reads the scene again if its files have changed, and says whether it did. Asks for no picture itself: [`Self::frame`] does if one is due.
     pub fn poll(&mut self) -> bool {
+        self.unsaved.clone().guard(|| self.poll_unguarded())
+    }
+
+    fn poll_unguarded(&mut self) -> bool {
         if !self.has_reloaded {
             self.app.world_mut().resource_mut::<Report>().timeline.clear();
         }
@@ -202,7 +223,13 @@ impl Session {
 
     /// Lays out the panels, does what a person asks for in them, and draws the picture if it is not that of the scene any more. `texture`
     /// stands for the picture.
+    ///
+    /// Should it panic, edits that are not saved are kept in files beside those of the scene first.
     pub fn frame(&mut self, input: RawInput, texture: TextureId) -> Frame {
+        self.unsaved.clone().guard(|| self.frame_unguarded(input, texture))
+    }
+
+    fn frame_unguarded(&mut self, input: RawInput, texture: TextureId) -> Frame {
         self.frames += 1;
         self.shown.texture = Some(texture);
         let dropped = self.take_dropped(&input);
@@ -215,6 +242,12 @@ impl Session {
         let mut quit = false;
         for command in of_files {
             quit |= self.obey_files(command);
+        }
+        if quit {
+            // What is not saved by now is not wanted.
+            self.unsaved.remember(None);
+        } else {
+            self.unsaved.remember(self.app.world().get_resource::<Edits>());
         }
         let before = (self.shown.pixels, self.shown.took, self.shown.is_coarse, self.shown.refined);
         let next = self.draw_if_due(size);
@@ -232,9 +265,12 @@ impl Session {
         let (sorted, all) = problems(&self.scene, self.app.world());
         let new: Vec<Problem> =
             all.iter().filter(|problem| !self.told.contains(&told(problem).1)).cloned().collect();
-        for problem in &new {
+        for problem in new.iter().take(MOST_TOLD) {
             let (level, text) = told(problem);
             self.log.tell(level, text);
+        }
+        if let Some(more) = more(new.len()) {
+            self.log.tell(Level::Warning, more);
         }
         if let Some(tell) = self.tell.filter(|_| !new.is_empty()) {
             tell(&new);

@@ -350,7 +350,11 @@ pub(super) fn difference(
     let settings = (shown.settings != base.settings).then(|| shown.settings.clone());
     let mut draft = Draft { settings, ..Draft::default() };
     for entity in &shown.entities {
-        let Some(was) = base.entity(&entity.name) else { continue };
+        let Some(was) = base.entity(&entity.name) else {
+            let added = DraftEntity { origin: None, ..DraftEntity::of(entity, registry)? };
+            draft.entities.insert(entity.name.clone(), added);
+            continue;
+        };
         let mut changed = Vec::new();
         for component in entity.components.iter() {
             let now = DraftComponent::of(entity, component, registry)?;
@@ -367,7 +371,8 @@ pub(super) fn difference(
                 _ => changed.push(now),
             }
         }
-        if changed.is_empty() {
+        let is_there = |type_id| entity.components.iter().any(|component| component.type_id == type_id);
+        if changed.is_empty() && was.components.iter().all(|before| is_there(before.type_id)) {
             continue;
         }
         let drafted = draft.entity_mut(base, &entity.name, registry)?;
@@ -375,6 +380,9 @@ pub(super) fn difference(
             drafted.components.retain(|before| before.type_id != component.type_id);
             drafted.components.push(component);
         }
+        drafted.components.retain(|component| is_there(component.type_id));
     }
+    let gone = base.entities.iter().filter(|entity| shown.entity(&entity.name).is_none());
+    draft.removed = gone.map(|entity| entity.name.clone()).collect();
     Ok(draft)
 }

@@ -5,6 +5,7 @@ use super::shared::value_of_file;
 use super::texts::{Changed, texts};
 use super::{EditError, Edits, SaveError, registry_of};
 use crate::components::{Mesh, Volume};
+use crate::regular_file;
 use crate::scene::document::{SceneDocument, identity};
 use crate::scene::of_files::relative_to;
 use crate::scene::problem::SourceFile;
@@ -108,8 +109,10 @@ fn write_all(files: impl Iterator<Item = Changed>) -> Option<Result<Vec<PathBuf>
             Err(error) => return failed(before.path(), error),
         }
     }
-    let is_as_read =
-        |file: &SourceFile| std::fs::read(file.path()).is_ok_and(|now| now == file.text().as_bytes());
+    let is_as_read = |file: &SourceFile| {
+        let text = file.text().as_bytes();
+        regular_file::read(file.path(), text.len() as u64).is_ok_and(|now| now == text)
+    };
     if !staged.iter().all(|(_, before)| is_as_read(before)) {
         return None;
     }

@@ -1,9 +1,9 @@
 //! Which files are watched, on what their paths depend, and what they held.
 
 use super::{Found, Reason, paths};
+use crate::regular_file;
 use crate::sources::trail::FileState;
 use std::collections::{BTreeSet, HashMap, HashSet};
-use std::fs::File;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -213,7 +213,7 @@ fn content_of(file: &Path) -> Option<u64> {
         names.hash(&mut hasher);
         return Some(hasher.finish());
     }
-    let mut file = File::open(file).ok()?;
+    let (mut file, _) = regular_file::open(file).ok()?;
     let mut buffer = vec![0; 1 << 18];
     loop {
         match file.read(&mut buffer) {

@@ -11,7 +11,8 @@ use super::{
     syntax::Codec,
 };
 use crate::sources::{
-    pick::Pick, pieces,
+    pick::Pick,
+    pieces,
     stored::{Stored, StoredFormat},
     stream::{Packing, SampleStream, Surplus, mend_by_header},
     volume::{Endian, checked_bytes},

@@ -29,7 +29,7 @@ fn cut(corners: &[Vec3]) -> (usize, f64) {
     let areas =
         triangles.iter().map(|&[a, b, c]| (corner(b) - corner(a)).cross(corner(c) - corner(a)).length());
     let around = (0..corners.len()).map(|index| corner(index).cross(corner((index + 1) % corners.len())));
-    (triangles.len(), areas.sum::<f64>() / around.sum::<glam::DVec3>().length())
+    (triangles.len(), areas.sum::<f64>() / around.sum::<DVec3>().length())
 }
 
 #[test]
@@ -80,10 +80,10 @@ fn a_mesh_far_from_its_origin_keeps_its_shape() {
     let text = "v 512345.00 4512345.00 120.0\nv 512345.10 4512345.00 120.0\nv 512345.00 4512345.10 120.0\nv 512345.00 4512345.00 120.1\n\
                 f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
     let mesh = read(text).unwrap();
-    assert_eq!(mesh.origin, glam::DVec3::new(512345.0, 4512345.0, 120.0));
+    assert_eq!(mesh.origin, DVec3::new(512345.0, 4512345.0, 120.0));
     let (low, high) = mesh.bounds().unwrap();
     assert!((high - low).abs_diff_eq(Vec3::splat(0.1), 1e-6), "{low} {high}");
-    assert_eq!(read("v 1 2 3\nv 2 2 3\nv 1 3 3\nf 1 2 3\n").unwrap().origin, glam::DVec3::ZERO);
+    assert_eq!(read("v 1 2 3\nv 2 2 3\nv 1 3 3\nf 1 2 3\n").unwrap().origin, DVec3::ZERO);
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn edges_are_hard_where_the_file_or_the_angle_says_so() {
         let text = format!("{bent}{first}\nf 1 2 3 4\n{second}\nf 2 5 6 3\n");
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("bent.obj");
-        std::fs::write(&path, text).unwrap();
+        fs::write(&path, text).unwrap();
         read_obj(&path, rule).unwrap().positions.len()
     };
     assert_eq!(vertices(["", ""], Normals::Auto), 8, "a right angle is a crease");

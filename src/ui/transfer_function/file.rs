@@ -2,11 +2,12 @@
 
 use crate::components::{Auto, Classification, TransferFunction};
 use crate::scene::{Problem, read_component};
+use crate::whole_file::Staged;
 use bevy_reflect::TypeRegistry;
 use glam::Vec3;
 use std::any::TypeId;
 use std::fmt::Write as _;
-use std::io::Write as _;
+
 use std::path::{Path, PathBuf};
 
 /// Why a transfer function could not be read or written.
@@ -63,24 +64,8 @@ pub fn write_transfer_function(
     function: &TransferFunction,
 ) -> Result<(), TransferFunctionFileError> {
     let fail = |source| TransferFunctionFileError::Write { path: path.to_owned(), source };
-    // What a link points to is written, not the link.
-    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // As any new file; the process's mask takes away from it.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    let mut file = builder.tempfile_in(folder).map_err(fail)?;
-    file.write_all(in_ron(function).as_bytes()).map_err(fail)?;
-    file.as_file().sync_all().map_err(fail)?;
-    if let Ok(old) = std::fs::metadata(&target) {
-        file.as_file().set_permissions(old.permissions()).map_err(fail)?;
-    }
-    file.persist(&target).map_err(|error| fail(error.error))?;
-    Ok(())
+    let staged = Staged::write(path, in_ron(function).as_bytes()).and_then(Staged::synced);
+    staged.and_then(Staged::commit).map_err(fail)
 }
 
 /// A transfer function as a person would write it: a line for each point, and nothing that is a default.

@@ -49,7 +49,10 @@ impl Session {
     pub(super) fn obey_files(&mut self, command: Command) -> bool {
         match command {
             Command::Open(files) => self.open(&files),
-            Command::DiscardAndOpen(files) => self.open_now(&files),
+            Command::DiscardAndOpen(files) => {
+                edits::forget_taken(self.app.world_mut());
+                self.open_now(&files);
+            }
             Command::AskOpen => {
                 let folder = match self.scene.is_untitled() {
                     true => PathBuf::new(),
@@ -63,7 +66,10 @@ impl Session {
             Command::SaveAndQuit => return self.save(Leaving::ToClose),
             Command::SaveAndOpen(files) => return self.save(Leaving::ToOpen(files)),
             Command::Quit => return self.may_quit(),
-            Command::Discard => return true,
+            Command::Discard => {
+                edits::forget_taken(self.app.world_mut());
+                return true;
+            }
             _ => {}
         }
         false
