@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper that cannot do its work fails the test")]
 
+#[path = "scene_language/numbers.rs"]
+mod numbers;
+
 use std::collections::{BTreeMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};

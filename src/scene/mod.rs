@@ -17,6 +17,7 @@ mod frame;
 mod layout;
 mod loader;
 mod names;
+mod numbers;
 mod of_files;
 mod parts;
 mod patch;

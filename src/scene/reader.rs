@@ -1,9 +1,10 @@
 //! RON parts become reflected values, by the types that the registry knows.
 
 use super::names::{nearest, suggestion};
+use super::numbers;
 use super::parts::{Misfit, Named, Part, Payload, Shape};
 use super::problem::{Place, Problem, SourceFile};
-use super::wanted::{excerpt, how_to_write, is_led, is_plain, numbers, shorthand, wanted};
+use super::wanted::{excerpt, how_to_write, is_led, is_plain, shorthand, too_large, wanted};
 use crate::components::{AssetPath, Names, Range, ReflectValidate, Required, Untagged};
 use crate::plain::piece;
 use bevy_reflect::attributes::CustomAttributes;
@@ -225,30 +226,23 @@ impl<'r> Reader<'r> {
                     wanted(registration),
                     excerpt(part.text)
                 ));
-                self.report(
-                    part,
-                    if is_plain(registration) { problem } else { problem.help(misfit.message) },
-                );
+                let help = match is_plain(registration) {
+                    true => too_large(registration, part.text),
+                    false => Some(misfit.message),
+                };
+                self.report(part, Problem { help, ..problem });
                 return None;
             }
         };
         if let Some(path) = value.try_downcast_mut::<AssetPath>() {
             path.resolve(self.file.path().parent().unwrap_or(Path::new("")));
         }
-        for (number, digits) in numbers(value.as_ref()) {
-            let range = allowed.range.copied().unwrap_or(Range::new(f64::MIN, f64::MAX));
-            if !number.is_finite() || !range.contains(number) {
-                let bounds = if range.max == f64::MAX && range.min == f64::MIN {
-                    "a finite number".into()
-                } else {
-                    range.to_string()
-                };
-                // What does not fit into 32 bits reads as infinite; the text says what was meant.
-                let found = if number.is_finite() { digits } else { excerpt(part.text) };
-                let message = format!("{} must be {bounds}, found `{found}`", self.name());
-                self.report(part, Problem::error(message).label("out of range"));
-                return None;
-            }
+        if let Some(refused) = numbers::refused(value.as_ref(), allowed.range) {
+            // What does not fit into 32 bits reads as infinite; the text says what was meant.
+            let found = refused.digits.unwrap_or_else(|| excerpt(part.text));
+            let message = format!("{} must be {}, found `{found}`", self.name(), refused.wanted);
+            self.report(part, Problem::error(message).label("out of range"));
+            return None;
         }
         if let Some(names) = allowed.names
             && let Some(name) = value.try_downcast_ref::<String>()

@@ -3,7 +3,7 @@
 use crate::components::{Leading, Shorthand};
 use bevy_reflect::enums::{StructVariantInfo, VariantInfo};
 use bevy_reflect::structs::StructInfo;
-use bevy_reflect::{PartialReflect, TypeRegistration};
+use bevy_reflect::{NamedField, TypeInfo, TypeRegistration};
 
 pub(super) fn how_to_write(variant: &VariantInfo) -> String {
     match variant {
@@ -26,19 +26,20 @@ pub(super) fn shorthand(info: &StructInfo) -> Option<&'static str> {
 
 /// What a leaf of this type looks like.
 pub(super) fn wanted(registration: &TypeRegistration) -> String {
-    let name = registration.type_info().type_path_table().short_path();
-    match name {
-        "f32" | "f64" => "a number".into(),
-        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number of 0 or more".into(),
-        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number".into(),
-        "bool" => "`true` or `false`".into(),
-        "String" => "text in quotes".into(),
-        "AssetPath" => "a path in quotes".into(),
-        "Vec2" => "two numbers `(x, y)`".into(),
-        "Vec3" => "three numbers `(x, y, z)`".into(),
-        "Vec4" => "four numbers `(x, y, z, w)`".into(),
-        "UVec2" => "two whole numbers of 0 or more `(x, y)`".into(),
-        "UVec3" => "three whole numbers of 0 or more `(x, y, z)`".into(),
+    let info = registration.type_info();
+    let name = info.type_path_table().short_path();
+    if let Some(kind) = Kind::of(info.type_path()) {
+        return kind.one();
+    }
+    match (name, info) {
+        ("bool", _) => "`true` or `false`".into(),
+        ("char", _) => "a letter in quotes `'a'`".into(),
+        ("String", _) => "text in quotes".into(),
+        ("AssetPath", _) => "a path in quotes".into(),
+        (_, TypeInfo::Struct(fields)) if info.type_path().starts_with("glam::") => {
+            vector(fields).unwrap_or_else(|| format!("a `{name}`"))
+        }
+        (_, TypeInfo::Array(items)) => format!("{} values in parentheses", items.capacity()),
         _ => format!("a `{name}`"),
     }
 }
@@ -48,28 +49,105 @@ pub(super) fn is_plain(registration: &TypeRegistration) -> bool {
     !wanted(registration).starts_with("a `")
 }
 
-/// The numbers in a leaf, each with its digits as they would be written.
-pub(super) fn numbers(value: &dyn PartialReflect) -> Vec<(f64, String)> {
-    use glam::{UVec3, Vec2, Vec3};
-    let single = |number: &f32| (f64::from(*number), number.to_string());
-    let whole = |number: &u32| (f64::from(*number), number.to_string());
-    if let Some(number) = value.try_downcast_ref::<f32>() {
-        vec![single(number)]
-    } else if let Some(number) = value.try_downcast_ref::<f64>() {
-        vec![(*number, number.to_string())]
-    } else if let Some(number) = value.try_downcast_ref::<u32>() {
-        vec![whole(number)]
-    } else if let Some(number) = value.try_downcast_ref::<i32>() {
-        vec![(f64::from(*number), number.to_string())]
-    } else if let Some(vector) = value.try_downcast_ref::<Vec2>() {
-        vector.to_array().iter().map(single).collect()
-    } else if let Some(vector) = value.try_downcast_ref::<Vec3>() {
-        vector.to_array().iter().map(single).collect()
-    } else if let Some(vector) = value.try_downcast_ref::<UVec3>() {
-        vector.to_array().iter().map(whole).collect()
-    } else {
-        Vec::new()
+/// What is more to be said of a whole number that its type does not hold.
+pub(super) fn too_large(registration: &TypeRegistration, text: &str) -> Option<String> {
+    let kind = Kind::of(registration.type_info().type_path())?;
+    let number: i128 = text.replace('_', "").parse().ok()?;
+    let (least, greatest) = kind.limits()?;
+    match () {
+        () if number > greatest => Some(format!("at most {greatest} can be written here")),
+        () if number < least && least < 0 => Some(format!("at least {least} can be written here")),
+        () => None,
     }
+}
+
+/// What numbers of a type are called.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Real,
+    /// Whole numbers of so many bits.
+    Signed(u32),
+    Unsigned(u32),
+    NonZero,
+}
+
+impl Kind {
+    fn of(type_path: &str) -> Option<Self> {
+        Some(match type_path {
+            "f32" | "f64" => Self::Real,
+            "u8" => Self::Unsigned(8),
+            "u16" => Self::Unsigned(16),
+            "u32" => Self::Unsigned(32),
+            "u64" => Self::Unsigned(64),
+            "u128" => Self::Unsigned(128),
+            "usize" => Self::Unsigned(usize::BITS),
+            "i8" => Self::Signed(8),
+            "i16" => Self::Signed(16),
+            "i32" => Self::Signed(32),
+            "i64" => Self::Signed(64),
+            "i128" => Self::Signed(128),
+            "isize" => Self::Signed(isize::BITS),
+            path if path.contains("::NonZero") => Self::NonZero,
+            _ => return None,
+        })
+    }
+
+    fn limits(self) -> Option<(i128, i128)> {
+        match self {
+            Self::Unsigned(bits @ ..128) => Some((0, (1 << bits) - 1)),
+            Self::Signed(bits @ ..128) => Some((-(1 << (bits - 1)), (1 << (bits - 1)) - 1)),
+            _ => None,
+        }
+    }
+
+    fn one(self) -> String {
+        match (self, self.limits()) {
+            (Self::Real, _) => "a number".into(),
+            (Self::NonZero, _) => "a whole number other than 0".into(),
+            // Short enough to be worth telling.
+            (Self::Signed(8 | 16) | Self::Unsigned(8 | 16), Some((least, greatest))) => {
+                format!("a whole number from {least} to {greatest}")
+            }
+            (Self::Unsigned(_), _) => "a whole number of 0 or more".into(),
+            (Self::Signed(_), _) => "a whole number".into(),
+        }
+    }
+
+    fn many(self) -> String {
+        self.one().replacen("a ", "", 1).replacen("number", "numbers", 1)
+    }
+}
+
+/// A vector of glam's by the names of its parts, or a matrix, whose parts are written one after the other.
+fn vector(fields: &StructInfo) -> Option<String> {
+    let first = fields.field_at(0)?.type_path();
+    let names: Vec<&str> = fields.iter().map(NamedField::name).collect();
+    if first == "bool" {
+        return Some(format!("{} of `true` and `false` `({})`", word(names.len()), names.join(", ")));
+    }
+    if let Some(kind) = Kind::of(first) {
+        return Some(format!("{} {} `({})`", word(names.len()), kind.many(), names.join(", ")));
+    }
+    let columns = fields.iter().map(|field| match field.type_info()? {
+        TypeInfo::Struct(column) => count(column),
+        _ => None,
+    });
+    let all = columns.sum::<Option<usize>>()?;
+    Some(format!("{} numbers in parentheses, column after column", word(all)))
+}
+
+/// The numbers of a matrix or a column.
+fn count(fields: &StructInfo) -> Option<usize> {
+    let each = fields.iter().map(|field| match field.type_info()? {
+        TypeInfo::Struct(column) => count(column),
+        info => Kind::of(info.type_path()).map(|_| 1),
+    });
+    each.sum()
+}
+
+fn word(count: usize) -> String {
+    let words = ["two", "three", "four", "five", "six"];
+    count.checked_sub(2).and_then(|index| words.get(index)).map_or(count.to_string(), |word| (*word).into())
 }
 
 /// The first characters of a text, on one line.
