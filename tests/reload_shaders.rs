@@ -9,8 +9,10 @@ mod own_shaders;
 use files::{Live, mark};
 use glam::UVec2;
 use own_shaders::with_own_shaders;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
+use tyndall::LightBudget;
 use tyndall::prelude::*;
 use tyndall::render::{Pixels, render_what_is_there};
 use tyndall::scene::Reload;
@@ -29,7 +31,10 @@ impl<'a> Shaders<'a> {
         let eye = "\"eye\": ( ViewCamera: (eye: (0.0, 0.0, 4.0), projection: Orthographic(height: 2.2)) ),
             \"sun\": ( DirectionalLight: (direction: (0.0, 0.0, -1.0)) ),";
         let scene = files::scene(&format!("{eye} {entities}"));
-        let live = Live::open_in(app, &[("scene.ron", &scene), ("mark.ron", &mark(0.0))], "scene.ron");
+        // Bytes of a fog that is the same everywhere, for scenes that have one.
+        let fog = "@".repeat(512);
+        let files = [("scene.ron", scene.as_str()), ("mark.ron", &mark(0.0)), ("fog.raw", &fog)];
+        let live = Live::open_in(app, &files, "scene.ron");
         Self { folder, live }
     }
 
@@ -47,6 +52,12 @@ impl<'a> Shaders<'a> {
             Reload::Reloaded { shaders, .. } => shaders,
             other => panic!("{other:?}"),
         }
+    }
+
+    /// How often each pass has run.
+    fn all_runs(&self) -> BTreeMap<&'static str, u64> {
+        let report = self.live.app.world().resource::<Report>();
+        report.passes.iter().map(|(pass, record)| (*pass, record.runs)).collect()
     }
 
     /// The middle of the picture.
@@ -135,5 +146,106 @@ fn what_a_shader_made_is_made_again_and_nothing_before_it() {
         shaders.next();
         assert!(is_near(shaders.middle(), tripled));
         assert_eq!(passes.map(|pass| shaders.runs(pass)), [2, 3, 4]);
+    });
+}
+
+/// Everything that has a shader: bodies of both strategies, a medium that scatters with a beam in its way, one that is classified
+/// beforehand, and a light for which there is no room.
+const EVERYTHING: &str = "
+    \"moon\": ( DirectionalLight: (direction: (-1.0, -1.0, -1.0)) ),
+    \"adaptive\": (
+        Transform: (translation: (-0.6, 0.0, 0.9), scale: 0.3), Mesh: Sphere(subdivisions: 1),
+        Subsurface: (material: Preset(\"marble\")), ScatteringMaps: (samples: 4, progressive: false),
+    ),
+    \"uniform\": (
+        Transform: (translation: (0.6, 0.0, 0.9), scale: 0.3), Mesh: Sphere(subdivisions: 1),
+        Subsurface: (material: Preset(\"marble\")),
+        ScatteringMaps: (strategy: Uniform(), samples: 4, progressive: false),
+    ),
+    \"beam\": ( Transform: (translation: (0.0, 0.0, 1.5)), Mesh: Box(size: (0.2, 0.2, 0.2)) ),
+    \"fog\": (
+        Volume: Raw(path: \"fog.raw\", size: (8, 8, 8), spacing: (0.25, 0.25, 0.25)),
+        TransferFunction: (domain: (0.0, 1.0), points: [(0.0, (0.9, 0.9, 0.9), 0.5), (1.0, (0.9, 0.9, 0.9), 0.5)]),
+        VolumeLighting: LightVolume(g: 0.4, towards_eye: true),
+    ),
+    \"haze\": (
+        Volume: Raw(path: \"fog.raw\", size: (8, 8, 8), spacing: (0.1, 0.1, 0.1)),
+        TransferFunction: (
+            domain: (0.0, 1.0), points: [(0.0, (0.9, 0.9, 0.9), 0.5), (1.0, (0.9, 0.9, 0.9), 0.5)],
+            classification: Pre,
+        ),
+    ),";
+
+/// Every shader file, and the passes that run again when it changes. Those that run for every picture are not told.
+const MADE_BY: &[(&str, &[&str])] = &[];
+
+#[needs(gpu)]
+#[test]
+fn every_shader_is_followed() {
+    with_own_shaders("every_shader_is_followed", |folder| {
+        let mut shaders = Shaders::open(folder, EVERYTHING);
+        shaders.live.app.insert_resource(LightBudget { volumes: 1, ..Default::default() });
+        shaders.live.app.insert_resource(Picture { size: UVec2::splat(9), camera: None, encoded: true });
+        render_what_is_there(&mut shaders.live.app).unwrap();
+        assert_eq!(shaders.live.messages(), [""; 0]);
+        let files: BTreeSet<String> = ["", "shared/"]
+            .iter()
+            .flat_map(|sub| {
+                let entries = fs::read_dir(folder.join(sub)).unwrap().map(Result::unwrap);
+                let files = entries.filter(|entry| entry.path().is_file());
+                files.map(move |entry| format!("{sub}{}", entry.file_name().to_string_lossy()))
+            })
+            .collect();
+        for file in &files {
+            // One that does not compile costs no compiling, and the pipelines that look at it say so.
+            let mistake = "\nconst MISTAKE = nothing;\n";
+            let text = fs::read_to_string(folder.join(file)).unwrap();
+            let before = shaders.all_runs();
+            fs::write(folder.join(file), format!("{text}{mistake}")).unwrap();
+            shaders.next();
+            render_what_is_there(&mut shaders.live.app).unwrap();
+            let told = shaders.live.messages().join("\n");
+            assert!(told.contains(&format!("{file}:")), "nothing looks at {file}: {told}");
+            let mut ran = shaders.all_runs();
+            ran.retain(|pass, runs| before.get(pass).is_none_or(|before| before != runs));
+            let ran: Vec<&str> = ran
+                .keys()
+                .copied()
+                .filter(|pass| !["surface", "raycast", "tonemap"].contains(pass))
+                .collect();
+            println!("{file}: {ran:?}");
+            fs::write(folder.join(file), text).unwrap();
+            shaders.next();
+            render_what_is_there(&mut shaders.live.app).unwrap();
+            assert_eq!(shaders.live.messages(), [""; 0], "{file}");
+        }
+    });
+}
+
+#[needs(gpu)]
+#[test]
+fn how_light_diffuses_is_followed() {
+    with_own_shaders("how_light_diffuses_is_followed", |folder| {
+        let fog = "\"fog\": (
+            Volume: Raw(path: \"fog.raw\", size: (8, 8, 8), spacing: (0.25, 0.25, 0.25)),
+            TransferFunction: (domain: (0.0, 1.0), points: [(0.0, (0.9, 0.9, 0.9), 0.5), (1.0, (0.9, 0.9, 0.9), 0.5)]),
+            VolumeLighting: LightVolume(),
+        ),";
+        let edits = [
+            ("diffusion.wgsl", "max(share * found,", "max(3.0 * share * found,"),
+            ("light_network.wgsl", "vec4f(medium.a * level.unit", "vec4f(3.0 * medium.a * level.unit"),
+            ("light_escape.wgsl", "+= fan.share *", "+= 0.25 * fan.share *"),
+        ];
+        let mut shaders = Shaders::open(folder, fog);
+        for (file, from, to) in edits {
+            let before = shaders.middle();
+            shaders.edit(file, from, to);
+            shaders.next();
+            let after = shaders.middle();
+            assert!(!is_near(before, after), "{file}: {before:?} {after:?}");
+            shaders.edit(file, to, from);
+            shaders.next();
+            assert!(is_near(shaders.middle(), before), "{file}");
+        }
     });
 }

@@ -33,7 +33,8 @@ pub(crate) fn forget(world: &mut World, shaders: &BTreeSet<String>) {
     made_by::<LightVolumes>(world, shaders, &["light_volume"]);
     made_by::<VolumeShadows>(world, shaders, &["gbuffer"]);
     made_by::<LightCells>(world, shaders, &["light_cells"]);
-    made_by::<ScatteredLight>(world, shaders, &["scattered_light"]);
+    made_by::<LightNetwork>(world, shaders, &["light_network", "light_escape"]);
+    made_by::<ScatteredLight>(world, shaders, &["scattered_light", "diffusion"]);
     made_by::<SharedLight>(world, shaders, &["shared_light", "light_volume", "scattered_light"]);
     made_by::<SummedLight>(world, shaders, &["summed_light"]);
     made_by::<EyeLight>(world, shaders, &["eye_light"]);
