@@ -30,7 +30,10 @@ fn steps(report: &mut Report) -> Result<()> {
 
     report.program("format", cargo().arguments(["fmt", "--all", "--check"]))?;
     report.program("lints", clippy())?;
-    report.program("licences", deny()?)?;
+    report.program("licences", deny()?.arguments(["check", "bans", "licenses", "sources"]))?;
+    advisories(report, cargo().arguments(["deny", "fetch", "db"]).capture(), || {
+        Ok(deny()?.arguments(["check", "advisories"]))
+    })?;
     report.step("assets", "cargo xtask assets --check", assets::check)?;
     report.program("tests", test::nextest().variable("CI", "true").inside(&environment))?;
     report.program("doc tests", test::doc_tests().variable("CI", "true").inside(&environment))?;
@@ -62,7 +65,26 @@ fn deny() -> Result<Program> {
             program.arguments(["--target", &host()?])
         }
     };
-    Ok(program.arguments(["check", "bans", "licenses", "sources"]))
+    Ok(program)
+}
+
+/// Looks for known vulnerabilities of all dependencies, where the database of them could be reached: a machine without the network is no reason
+/// to fail.
+fn advisories(
+    report: &mut Report,
+    fetched: Result<String>,
+    check: impl FnOnce() -> Result<Program>,
+) -> Result<()> {
+    match fetched {
+        Ok(_) => report.program("advisories", check()?),
+        Err(error) => {
+            let told = format!("{error:#}");
+            // The first line says what was tried; the last is the reason.
+            let reason = told.lines().map(str::trim).rfind(|line| !line.is_empty()).unwrap_or_default();
+            report.not_checked("advisories", &format!("the database cannot be reached ({reason})"));
+            Ok(())
+        }
+    }
 }
 
 /// The system that cargo itself was built for.
@@ -124,5 +146,23 @@ mod tests {
         let names: Vec<_> =
             found.iter().map(|path| Path::new(path).strip_prefix(root.path()).unwrap()).collect();
         assert_eq!(names, [Path::new("b.ron"), Path::new("volumes/a.ron")]);
+    }
+
+    #[test]
+    fn without_the_network_advisories_are_not_checked_and_with_it_they_count() {
+        let mut report = Report::default();
+        let offline = Err(anyhow::anyhow!("`cargo deny fetch db` failed:\nerror: no route to host\n"));
+        advisories(&mut report, offline, || panic!("there is nothing to check with")).unwrap();
+        let table = report.to_string();
+        assert!(
+            table.contains("not checked: the database cannot be reached (error: no route to host)"),
+            "{table}"
+        );
+        assert!(!table.contains("ok") && !table.contains("FAILED"), "{table}");
+
+        let answer = |command: &'static str| move || Ok(cargo().arguments([command]));
+        let vulnerable = advisories(&mut report, Ok(String::new()), answer("no-such-command"));
+        assert!(vulnerable.unwrap_err().to_string().contains("step `advisories` failed"));
+        advisories(&mut report, Ok(String::new()), answer("--version")).unwrap();
     }
 }

@@ -16,7 +16,14 @@ pub struct Report {
 struct Step {
     name: String,
     took: Duration,
-    passed: bool,
+    verdict: Verdict,
+}
+
+enum Verdict {
+    Passed,
+    Failed,
+    /// And why.
+    NotChecked(String),
 }
 
 impl Report {
@@ -25,8 +32,16 @@ impl Report {
         eprintln!("\n--- {name}: {repeat}");
         let start = Instant::now();
         let outcome = action();
-        self.steps.push(Step { name: name.to_owned(), took: start.elapsed(), passed: outcome.is_ok() });
+        let verdict = if outcome.is_ok() { Verdict::Passed } else { Verdict::Failed };
+        self.steps.push(Step { name: name.to_owned(), took: start.elapsed(), verdict });
         outcome.map_err(|error| anyhow!("{error:#}\nstep `{name}` failed; to repeat it alone:\n    {repeat}"))
+    }
+
+    /// Notes a step that this machine cannot take, which is no failure.
+    pub fn not_checked(&mut self, name: &str, why: &str) {
+        eprintln!("\n--- {name}: not checked: {why}");
+        let verdict = Verdict::NotChecked(why.to_owned());
+        self.steps.push(Step { name: name.to_owned(), took: Duration::ZERO, verdict });
     }
 
     /// Runs a step that is one program.
@@ -39,8 +54,12 @@ impl Report {
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let width = self.steps.iter().map(|step| step.name.chars().count()).max().unwrap_or(0).max(5);
-        for Step { name, took, passed } in &self.steps {
-            let verdict = if *passed { "ok" } else { "FAILED" };
+        for Step { name, took, verdict } in &self.steps {
+            let verdict = match verdict {
+                Verdict::Passed => "ok".to_owned(),
+                Verdict::Failed => "FAILED".to_owned(),
+                Verdict::NotChecked(why) => format!("not checked: {why}"),
+            };
             writeln!(f, "{name:width$} {:8.1} s  {verdict}", took.as_secs_f64())?;
         }
         let total: Duration = self.steps.iter().map(|step| step.took).sum();
