@@ -465,6 +465,36 @@ fn plugins_may_ask_for_names() {
 }
 
 #[test]
+fn what_other_programs_call_it_is_understood() {
+    let cases = [
+        (r#"Mesh: Obj("x.obj")"#, "did you mean `File`?"),
+        (r#"Mesh: Gltf("x.glb")"#, "did you mean `File`?"),
+        (r#"Mesh: Cube()"#, "did you mean `Box`?"),
+        (r#"Volume: Nifti("x.nii")"#, "did you mean `File`?"),
+        (r#"Volume: dicom("x")"#, "did you mean `File`?"),
+        ("Color: (1, 0, 0)", "did you mean `Phong`?"),
+        ("Material: ()", "did you mean `Phong` or `Subsurface`?"),
+        ("Sun: ()", "did you mean `DirectionalLight`?"),
+        ("Camera: ()", "did you mean `ViewCamera`?"),
+        ("lookup_table: ()", "did you mean `TransferFunction`?"),
+        ("Mesh: Sphere(), Phong: (color: (1, 0, 0))", "did you mean `diffuse`?"),
+        ("ViewCamera: (look_at: (1, 0, 0))", "did you mean `target`?"),
+        // Of a plugin.
+        ("Spin: ()", "did you mean `Turntable`?"),
+        ("Turntable: (speed: 3)", "did you mean `degrees_per_second`?"),
+    ];
+    for (components, expected) in cases {
+        let errors = Files::scene(&format!("\"it\": ( {components} )")).errors(&[]);
+        assert!(
+            errors.iter().any(|error| error.ends_with(&format!("; {expected}"))),
+            "{components}: {errors:?}"
+        );
+    }
+    let errors = Files::scene("\"it\": ( Mesh: Sphere() )").errors(&["it.Material.diffuse=(1, 0, 0)"]);
+    assert!(errors[0].ends_with("; did you mean `it.Phong.diffuse`?"), "{errors:?}");
+}
+
+#[test]
 fn what_glows_by_itself_needs_no_light() {
     let dark = |entity: &str| {
         let files = Files::scene(&format!(r#""ball": ( Mesh: Sphere(), {entity} )"#));

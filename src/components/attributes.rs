@@ -107,6 +107,24 @@ impl Names {
     }
 }
 
+/// What else people call a component, a variant or a field, to be suggested where they write it so: what other programs call it, or what it is
+/// for. It cannot be written by these names.
+///
+/// ```
+/// use bevy_reflect::Reflect;
+/// use tyndall::components::AlsoCalled;
+///
+/// #[derive(Reflect)]
+/// #[reflect(@AlsoCalled(&["Spin"]))]
+/// struct Turning {
+///     #[reflect(@AlsoCalled(&["rate", "speed"]))]
+///     degrees_per_second: f32,
+/// }
+/// ```
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(opaque)]
+pub struct AlsoCalled(pub &'static [&'static str]);
+
 /// Marks a field of a component that holds the name of another entity, for which the scene must write the component that this names:
 /// `#[reflect(@NameOf("Subsurface"))]`.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-use super::{Direction, Range, Rgb, Validate, attributes::ReflectValidate};
+use super::{AlsoCalled, Direction, Range, Rgb, Validate, attributes::ReflectValidate};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::Vec3;
@@ -18,12 +18,14 @@ use glam::Vec3;
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, PartialEq, Validate)]
+#[reflect(@AlsoCalled(&["Light", "Sun", "SunLight", "DistantLight", "Lamp", "Spot", "PointLight", "AreaLight"]))]
 pub struct DirectionalLight {
     /// The direction in which the light travels.
     #[reflect(@Direction)]
     pub direction: Vec3,
     /// Irradiance on a surface facing the light.
     #[reflect(@Range::non_negative(), @Rgb::Colour)]
+    #[reflect(@AlsoCalled(&["color", "colour", "intensity", "radiance", "power", "strength", "brightness"]))]
     pub irradiance: Vec3,
 }
 

@@ -1,4 +1,4 @@
-use super::{AssetPath, Leading, Placement, Range, Required, Transform, Unit};
+use super::{AlsoCalled, AssetPath, Leading, Placement, Range, Required, Transform, Unit};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::{Vec2, Vec3};
@@ -23,9 +23,11 @@ pub use crate::sources::mesh::Normals;
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, PartialEq)]
+#[reflect(@AlsoCalled(&["Model", "Geometry", "Object", "Shape", "Surface", "Obj", "Ply", "Stl", "Gltf", "Sphere", "Cube", "Box", "Plane"]))]
 #[require(Transform, Placement)]
 pub enum Mesh {
     /// Read from a Wavefront OBJ file.
+    #[reflect(@AlsoCalled(&["Obj", "Wavefront", "Ply", "Stl", "Gltf", "Glb", "Model", "Load", "Path", "Import"]))]
     File {
         /// The file.
         #[reflect(@Leading, @Required)]
@@ -35,6 +37,7 @@ pub enum Mesh {
         normals: Normals,
     },
     /// A sphere about the origin.
+    #[reflect(@AlsoCalled(&["Ball", "Icosphere", "Globe"]))]
     Sphere {
         /// Scene units.
         #[reflect(default = "one", @Range::positive(), @Unit("scene units"))]
@@ -44,12 +47,14 @@ pub enum Mesh {
         subdivisions: u32,
     },
     /// A box about the origin.
+    #[reflect(@AlsoCalled(&["Cube", "Cuboid", "Brick"]))]
     Box {
         /// Scene units along x, y and z.
         #[reflect(default = "ones", @Range::positive(), @Unit("scene units"))]
         size: Vec3,
     },
     /// A rectangle in the plane y = 0 that faces +y.
+    #[reflect(@AlsoCalled(&["Quad", "Rectangle", "Ground", "Floor", "Grid"]))]
     Plane {
         /// Scene units along x and z.
         #[reflect(default = "one_by_one", @Range::positive(), @Unit("scene units"))]

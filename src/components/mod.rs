@@ -26,7 +26,7 @@ mod volume_lighting;
 
 pub use asset_path::AssetPath;
 pub use attributes::{
-    Leading, NameOf, Names, Range, ReflectValidate, Required, Shorthand, Unit, Untagged, Validate,
+    AlsoCalled, Leading, NameOf, Names, Range, ReflectValidate, Required, Shorthand, Unit, Untagged, Validate,
 };
 pub use auto::Auto;
 pub use directional_light::DirectionalLight;

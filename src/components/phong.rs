@@ -1,4 +1,4 @@
-use super::{Range, Rgb, Slider};
+use super::{AlsoCalled, Range, Rgb, Slider};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::Vec3;
@@ -21,18 +21,22 @@ use glam::Vec3;
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, PartialEq)]
+#[reflect(@AlsoCalled(&["Material", "Color", "Colour", "Lambert", "BlinnPhong", "Diffuse", "Albedo", "Shader", "Pbr"]))]
 pub struct Phong {
     /// Radiance without any light.
     #[reflect(@Range::non_negative(), @Rgb::Colour)]
     pub ambient: Vec3,
     /// Albedo of the diffuse part.
     #[reflect(@Range::new(0.0, 1.0), @Rgb::Colour)]
+    #[reflect(@AlsoCalled(&["color", "colour", "albedo", "kd", "base_color"]))]
     pub diffuse: Vec3,
     /// Strength of the specular part.
     #[reflect(@Range::new(0.0, 1.0), @Rgb::Colour)]
+    #[reflect(@AlsoCalled(&["reflectance", "ks"]))]
     pub specular: Vec3,
     /// Blinn's exponent.
     #[reflect(@Range::new(0.0, 10_000.0), @Slider::logarithmic(1.0, 10_000.0))]
+    #[reflect(@AlsoCalled(&["exponent", "glossiness", "ns"]))]
     pub shininess: f32,
 }
 

@@ -1,4 +1,4 @@
-use super::{Range, Slider, Unit};
+use super::{AlsoCalled, Range, Slider, Unit};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -17,6 +17,7 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, PartialEq)]
+#[reflect(@AlsoCalled(&["RayMarch", "RayMarching", "RayCaster", "VolumeRendering"]))]
 pub struct RayCast {
     /// Distance of the samples.
     #[reflect(@Range::new(0.01, 100.0), @Slider::logarithmic(0.1, 10.0), @Unit("voxels"))]

@@ -1,6 +1,6 @@
 use super::{
-    ChooseVariant, Names, Phong, Range, ReflectChooseVariant, Rgb, ScatteringMaps, Slider, Unit, Validate,
-    attributes::ReflectValidate,
+    AlsoCalled, ChooseVariant, Names, Phong, Range, ReflectChooseVariant, Rgb, ScatteringMaps, Slider, Unit,
+    Validate, attributes::ReflectValidate,
 };
 use crate::optics::{materials, medium::Medium};
 use bevy_ecs::prelude::*;
@@ -31,6 +31,7 @@ use glam::Vec3;
 /// ```
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(Component, Default, PartialEq)]
+#[reflect(@AlsoCalled(&["Material", "Translucent", "Translucency", "SubsurfaceScattering", "Bssrdf", "Sss", "Skin", "Wax", "Marble"]))]
 #[require(ScatteringMaps)]
 pub struct Subsurface {
     /// What the mesh is filled with.

@@ -3,7 +3,7 @@ mod preset;
 pub use preset::Preset;
 
 use super::{
-    Auto, Label, Names, Range, Rgb, Shorthand, Slider, Unit, Validate,
+    AlsoCalled, Auto, Label, Names, Range, Rgb, Shorthand, Slider, Unit, Validate,
     attributes::{ReflectValidate, in_ron},
 };
 use crate::sources::Histogram;
@@ -72,6 +72,7 @@ use glam::{Vec2, Vec3};
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, PartialEq, Validate)]
+#[reflect(@AlsoCalled(&["ColorMap", "ColourMap", "LookupTable", "Lut", "OpacityMap", "Palette", "Tf"]))]
 pub struct TransferFunction {
     /// A built-in function that follows the data, in place of `points` and `iso`.
     #[reflect(@Shorthand("Preset"), @Names { of: "preset", known: &preset::NAMES })]

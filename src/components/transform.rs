@@ -1,7 +1,7 @@
 //! Where an entity is: as written, as moved by animation, and the product of the two.
 
-use super::SceneSettings;
 use super::attributes::{ReflectValidate, Untagged, Validate, in_ron};
+use super::{AlsoCalled, SceneSettings};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 use glam::{DAffine3, DQuat, EulerRot, Vec3};
@@ -21,13 +21,16 @@ use glam::{DAffine3, DQuat, EulerRot, Vec3};
 /// ```
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(Component, Default, PartialEq, Validate)]
+#[reflect(@AlsoCalled(&["Position", "Translation", "Rotation", "Scale", "Pose", "Location"]))]
 #[require(Placement)]
 pub struct Transform {
     /// Scene units.
     #[reflect(@super::Unit("scene units"))]
+    #[reflect(@AlsoCalled(&["position", "location", "offset"]))]
     pub translation: Vec3,
     /// Degrees about the fixed x, then y, then z axis.
     #[reflect(@super::Unit("degrees"))]
+    #[reflect(@AlsoCalled(&["orientation", "angles", "euler"]))]
     pub rotation: Vec3,
     /// Factor along the entity's own axes.
     pub scale: Scale,

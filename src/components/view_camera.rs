@@ -1,5 +1,5 @@
 use super::{
-    Range, Slider, Unit, Validate,
+    AlsoCalled, Range, Slider, Unit, Validate,
     attributes::{ReflectValidate, in_ron},
 };
 use crate::components::Placement;
@@ -27,19 +27,23 @@ use glam::Vec3;
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, PartialEq, Validate)]
+#[reflect(@AlsoCalled(&["Camera", "Eye", "Viewer", "PerspectiveCamera", "OrthographicCamera"]))]
 #[require(Placement)]
 pub struct ViewCamera {
     /// Where the camera stands.
     #[reflect(@Unit("scene units"))]
+    #[reflect(@AlsoCalled(&["position", "from", "location", "origin"]))]
     pub eye: Vec3,
     /// The point in the middle of the picture.
     #[reflect(@Unit("scene units"))]
+    #[reflect(@AlsoCalled(&["look_at", "to", "at", "center", "centre", "focus"]))]
     pub target: Vec3,
     /// What points up in the picture.
     pub up: Vec3,
     /// Has the camera stand where all of the scene fills the picture, in place of `eye` and `target`.
     pub frame: Option<Framing>,
     /// How the scene is projected.
+    #[reflect(@AlsoCalled(&["fov", "vertical_fov", "lens"]))]
     pub projection: Projection,
     /// Exposure value.
     #[reflect(@Range::new(-100.0, 100.0), @Slider::linear(-8.0, 8.0), @Unit("EV"))]

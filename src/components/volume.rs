@@ -1,6 +1,6 @@
 use super::{
-    AssetPath, Auto, Leading, Placement, Range, RayCast, Required, TransferFunction, Transform, Unit,
-    VolumeLighting,
+    AlsoCalled, AssetPath, Auto, Leading, Placement, Range, RayCast, Required, TransferFunction, Transform,
+    Unit, VolumeLighting,
 };
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -52,9 +52,11 @@ pub use crate::sources::{Endian, SampleFormat};
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, PartialEq)]
+#[reflect(@AlsoCalled(&["Voxels", "Scan", "Image", "Grid", "Density", "Raw", "Nifti", "Nrrd", "Dicom"]))]
 #[require(Transform, Placement, TransferFunction, VolumeLighting, RayCast)]
 pub enum Volume {
     /// Read from a file, or a folder of DICOM slices, that says itself what it holds.
+    #[reflect(@AlsoCalled(&["Nifti", "Nii", "Nrrd", "Nhdr", "Dicom", "Dcm", "MetaImage", "Mha", "Mhd", "Vtk", "Vti", "Npy", "Numpy", "Tiff", "Tif", "Image", "Load", "Path", "Import"]))]
     File {
         /// The file or folder.
         #[reflect(@Leading, @Required)]
@@ -76,6 +78,7 @@ pub enum Volume {
         interpolation: Interpolation,
     },
     /// Bare samples, as they stand in memory.
+    #[reflect(@AlsoCalled(&["Binary", "Bytes", "Data", "Bin"]))]
     Raw {
         /// The file.
         #[reflect(@Required)]

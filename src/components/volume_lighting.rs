@@ -1,4 +1,4 @@
-use super::{Auto, Range, Slider, Unit};
+use super::{AlsoCalled, Auto, Range, Slider, Unit};
 use bevy_ecs::prelude::*;
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -44,11 +44,14 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 /// ```
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(Component, Default, PartialEq)]
+#[reflect(@AlsoCalled(&["VolumeShading", "VolumeLight"]))]
 pub enum VolumeLighting {
     /// The colours of the transfer function as they are.
     #[default]
+    #[reflect(@AlsoCalled(&["Emission", "Absorption", "Unlit"]))]
     EmissionAbsorption,
     /// Blinn-Phong with the gradient for a normal.
+    #[reflect(@AlsoCalled(&["Phong", "BlinnPhong", "GradientLighting"]))]
     Gradient {
         /// Share without light.
         #[reflect(default = "ambient", @Range::non_negative(), @Slider::linear(0.0, 1.0))]
@@ -64,6 +67,7 @@ pub enum VolumeLighting {
         shininess: f32,
     },
     /// Light that was scattered once.
+    #[reflect(@AlsoCalled(&["Single", "Shadows"]))]
     SingleScattering {
         /// Mean cosine of scattering.
         #[reflect(default, @Range::new(-0.999, 0.999))]
@@ -73,6 +77,7 @@ pub enum VolumeLighting {
         resolution: f32,
     },
     /// Light that was scattered, however often.
+    #[reflect(@AlsoCalled(&["MultipleScattering", "Scattering", "GlobalIllumination"]))]
     LightVolume {
         /// Half angle of the cone of scattered light.
         #[reflect(default, @Range::new(1.0, 89.0), @Unit("degrees"))]

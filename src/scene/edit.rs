@@ -1,12 +1,11 @@
 //! Changing one value in the text of a scene, leaving the rest of the text as it is.
 
 use super::document::{Override, SETTINGS, SceneDocument};
-use super::names::nearest;
+use super::names::{Known, meant, nearest};
 use super::parts::{Part, Payload, Shape};
 use super::problem::{Place, Problem, SourceFile};
 use super::tokens::tokens;
 use super::wanted::{is_led, shorthand};
-use bevy_ecs::reflect::ReflectComponent;
 use bevy_reflect::enums::VariantInfo;
 use bevy_reflect::{TypeInfo, TypeRegistration, TypeRegistry};
 use std::path::PathBuf;
@@ -53,10 +52,10 @@ pub(super) fn apply(
     let component = path.split(['.', '[']).next().unwrap_or_default();
     let Some(registration) = registry.get_with_short_type_path(component) else {
         let written: Vec<&str> = entity.components.iter().map(|component| component.name.as_str()).collect();
-        let help = nearest(component, registered(registry)).map_or_else(
-            || format!("`{}` has: {}", entity.name, written.join(", ")),
-            |near| format!("did you mean `{}.{near}{}`?", entity.name, &path[component.len()..]),
-        );
+        let help = match meant(component, &Known::components(registry)).first() {
+            Some(near) => format!("did you mean `{}.{near}{}`?", entity.name, &path[component.len()..]),
+            None => format!("`{}` has: {}", entity.name, written.join(", ")),
+        };
         return Err(fail(format!("there is no component `{component}`"), help));
     };
     let place = entity.place_of(path);
@@ -142,12 +141,6 @@ fn head(document: &SceneDocument, change: &Override) -> Option<(PathBuf, String)
     }
     let whole = document.head_place("").filter(|_| SETTINGS.contains(&field))?;
     Some(insert(whole, field, &change.value, None))
-}
-
-/// The names of all components.
-fn registered(registry: &TypeRegistry) -> impl Iterator<Item = &'static str> {
-    let components = registry.iter().filter(|registration| registration.data::<ReflectComponent>().is_some());
-    components.map(|registration| registration.type_info().type_path_table().short_path())
 }
 
 fn splice(place: &Place, value: &str) -> (PathBuf, String) {

@@ -3,7 +3,7 @@
 use super::document::{Details, Position, SETTINGS, SceneComponent, SceneDocument, SceneEntity, identity};
 use super::edit;
 use super::frame::Frame;
-use super::names::suggestion;
+use super::names::{Known, suggestion};
 use super::parts::{Named, Part};
 use super::problem::{Place, Problem, SourceFile};
 use super::reader::{Allowed, Reader};
@@ -72,7 +72,7 @@ struct Loader<'a> {
     /// The files that include each other down to the one that is being read.
     chain: Vec<PathBuf>,
     /// The names of all components, once one was asked for that is none.
-    known: OnceCell<Vec<&'static str>>,
+    known: OnceCell<Vec<Known<'a>>>,
     /// What was reported of files that several entities share.
     told: HashSet<(Option<Place>, String)>,
     /// Files that hold no component of a type, which was reported.
@@ -190,6 +190,7 @@ impl<'a> Loader<'a> {
             other => {
                 let mut known = SETTINGS.to_vec();
                 known.extend(["include", "entities"]);
+                let known: Vec<Known> = known.into_iter().map(Known::plain).collect();
                 let problem =
                     Problem::error(format!("a scene has no field `{other}`")).label("unknown field");
                 reader.report(name, problem.help(suggestion(other, &known)));
@@ -410,7 +411,7 @@ impl<'a> Loader<'a> {
         } else {
             Problem::error(format!("there is no component `{}`", name.text))
                 .label("unknown component")
-                .help(suggestion(name.text, self.known.get_or_init(|| components(self.registry))))
+                .help(suggestion(name.text, self.known.get_or_init(|| Known::components(self.registry))))
         };
         reader.report(name, problem);
         None
@@ -452,11 +453,3 @@ impl<'a> Loader<'a> {
     }
 }
 
-/// The names of all components, in the order of the alphabet.
-fn components(registry: &TypeRegistry) -> Vec<&'static str> {
-    let components = registry.iter().filter(|registration| registration.data::<ReflectComponent>().is_some());
-    let mut known: Vec<_> =
-        components.map(|registration| registration.type_info().type_path_table().short_path()).collect();
-    known.sort_unstable();
-    known
-}

@@ -1,6 +1,6 @@
 //! RON parts become reflected values, by the types that the registry knows.
 
-use super::names::{nearest, suggestion};
+use super::names::{Known, nearest, suggestion};
 use super::numbers;
 use super::parts::{Misfit, Named, Part, Payload, Shape};
 use super::problem::{Place, Problem, SourceFile};
@@ -276,7 +276,7 @@ impl<'r> Reader<'r> {
         }
         for Named { name, value } in &written {
             let Some(field) = known.iter().find(|field| field.name() == name.text) else {
-                let names: Vec<_> = known.iter().map(|field| field.name()).collect();
+                let names: Vec<Known> = known.iter().map(|field| Known::field(field)).collect();
                 let problem =
                     Problem::error(format!("`{owner}` has no field `{}`", name.text)).label("unknown field");
                 self.report(name, problem.help(suggestion(name.text, &names)));
@@ -380,7 +380,7 @@ impl<'r> Reader<'r> {
             let message = format!("`{}` is no kind of {}", excerpt(at.text), self.name());
             let problem = Problem::error(message).label("unknown");
             let help = match word {
-                Some(word) => suggestion(word.text, info.variant_names()),
+                Some(word) => suggestion(word.text, &info.iter().map(Known::variant).collect::<Vec<_>>()),
                 None => format!("write {}", info.iter().map(how_to_write).collect::<Vec<_>>().join(" or ")),
             };
             self.report(&at, problem.help(help));

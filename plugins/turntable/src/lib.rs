@@ -15,11 +15,11 @@ use tyndall::prelude::*;
 /// | `degrees_per_second` | degrees per second, right-handed about the axis | finite | 36.0 |
 /// | `axis` | direction through the scene's origin | not zero | (0, 1, 0) |
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
-#[reflect(Component, Default, PartialEq, Validate)]
+#[reflect(Component, Default, PartialEq, Validate, @AlsoCalled(&["Spin", "Rotate", "Orbit", "Animation"]))]
 #[require(Motion)]
 pub struct Turntable {
     /// Rate; positive is right-handed about the axis.
-    #[reflect(@Unit("degrees per second"))]
+    #[reflect(@Unit("degrees per second"), @AlsoCalled(&["rate", "speed"]))]
     pub degrees_per_second: f32,
     /// Axis through the origin of the scene.
     pub axis: Vec3,
