@@ -13,6 +13,7 @@ mod bug;
 mod check;
 mod ending;
 mod exit;
+mod headless;
 mod info;
 mod new;
 mod open;
@@ -54,6 +55,9 @@ fn run_unguarded<M>(words: &[OsString], plugins: impl Plugins<M>) -> ExitCode {
         Ok(arguments) => arguments,
         Err(shown) => return exit::help(&shown),
     };
+    if !matches!(arguments.command, Command::View(_)) {
+        headless::leave_out_window_system();
+    }
     let filter = env_logger::Env::default().default_filter_or("warn,wgpu_hal=error");
     let mut logger = env_logger::Builder::from_env(filter);
     terminal::log_to(&mut logger);
