@@ -119,6 +119,9 @@ pub(super) struct NewArguments {
     /// Make a plugin crate with a component of its own instead of a scene
     #[arg(long)]
     pub plugin: bool,
+    /// Write what the tour of the README starts from: all example scenes, and what they read
+    #[arg(long, conflicts_with = "plugin")]
+    pub tour: bool,
     /// For a plugin: the checkout of Tyndall to build against, instead of the published crate
     #[arg(long, value_name = "FOLDER", requires = "plugin")]
     pub tyndall: Option<PathBuf>,

@@ -7,6 +7,8 @@ use crate::scene::{is_data, scene_of_files};
 use crate::whole_file::folder_of;
 use std::path::{Path, PathBuf};
 
+mod tour;
+
 pub(super) fn run(arguments: &NewArguments) -> Result<(), Failure> {
     if let Some(output) = &arguments.output {
         return scene_for(arguments, output);
@@ -21,7 +23,13 @@ pub(super) fn run(arguments: &NewArguments) -> Result<(), Failure> {
     if folder.read_dir().is_ok_and(|mut entries| entries.next().is_some()) {
         return Err(Failure::Usage(format!("{} is not empty; nothing was written", folder.display())));
     }
-    let files = if arguments.plugin { plugin(folder, arguments.tyndall.as_deref())? } else { scene() };
+    let files = match () {
+        () if arguments.plugin => plugin(folder, arguments.tyndall.as_deref())?,
+        () if arguments.tour => {
+            tour::FILES.iter().map(|(name, contents)| (*name, contents.to_vec())).collect()
+        }
+        () => scene(),
+    };
     let mut made = Made::default();
     for (name, contents) in files {
         let path = folder.join(name);
