@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper that cannot do its work fails the test")]
 
+#[path = "cli/help.rs"]
+mod help;
+
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 /// Light scattering in meshes and volumes, as data.
 #[derive(Parser, Debug)]
-#[command(name = "tyndall", version, about, arg_required_else_help = true)]
+#[command(name = "tyndall", version, about, arg_required_else_help = true, disable_help_subcommand = true)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -27,6 +27,14 @@ pub(super) enum Command {
     Info(InfoArguments),
     /// Write a starter scene, a scene for meshes and volumes, or a starter plugin crate
     New(NewArguments),
+    /// Tell of a command, or of a component that scenes are written with; `help components` lists these
+    Help(HelpArguments),
+}
+
+#[derive(Args, Debug)]
+pub(super) struct HelpArguments {
+    /// A command, a component such as Volume, or `components`
+    pub topic: Option<String>,
 }
 
 #[derive(Args, Debug)]

@@ -14,6 +14,7 @@ mod check;
 mod ending;
 mod exit;
 mod headless;
+mod help;
 mod info;
 mod new;
 mod open;
@@ -71,6 +72,7 @@ fn run_unguarded<M>(words: &[OsString], plugins: impl Plugins<M>) -> ExitCode {
         Command::Check(arguments) => check::run(&mut app, &arguments),
         Command::Info(arguments) => info::run(&mut app, &arguments),
         Command::New(arguments) => new::run(&arguments),
+        Command::Help(arguments) => help::run(&app, &arguments),
     };
     exit::code(done)
 }

@@ -44,6 +44,18 @@ pub(super) fn wanted(registration: &TypeRegistration) -> String {
     }
 }
 
+/// The same in as few words as can be: `number`, `(x, y, z)`.
+pub(crate) fn wanted_in_short(registration: &TypeRegistration) -> String {
+    let wanted = wanted(registration);
+    match wanted.split_once('`') {
+        Some((words, vector)) if vector.starts_with('(') => {
+            let kind = if words.contains("whole") { " whole numbers" } else { "" };
+            format!("{}{kind}", vector.trim_end_matches('`'))
+        }
+        _ => wanted.strip_prefix("a ").unwrap_or(&wanted).to_owned(),
+    }
+}
+
 /// Whether [`wanted`] says all there is to say.
 pub(super) fn is_plain(registration: &TypeRegistration) -> bool {
     !wanted(registration).starts_with("a `")

@@ -64,6 +64,11 @@ pub fn to_ron(value: &dyn PartialReflect, registry: &TypeRegistry) -> Result<Str
     Writer { registry, leaves_out_defaults: true }.value(value).map(|written| written.line())
 }
 
+/// The same with all fields, those that have their defaults too.
+pub(crate) fn in_full(value: &dyn PartialReflect, registry: &TypeRegistry) -> Result<String, WriteError> {
+    Writer { registry, leaves_out_defaults: false }.value(value).map(|written| written.line())
+}
+
 /// Whether two values are equal: by their own comparison, or else by what would be written.
 pub(super) fn equal(one: &dyn PartialReflect, other: &dyn PartialReflect, registry: &TypeRegistry) -> bool {
     one.reflect_partial_eq(other).unwrap_or_else(|| match (to_ron(one, registry), to_ron(other, registry)) {
