@@ -452,4 +452,3 @@ impl<'a> Loader<'a> {
         path == self.path || identity(path).starts_with(&self.home)
     }
 }
-

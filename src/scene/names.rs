@@ -1,11 +1,11 @@
 //! Finding what a misspelt name was meant to be.
 
 use crate::components::AlsoCalled;
+use crate::plain::piece;
 use bevy_ecs::reflect::ReflectComponent;
 use bevy_reflect::attributes::CustomAttributes;
 use bevy_reflect::enums::VariantInfo;
 use bevy_reflect::{NamedField, TypeInfo, TypeRegistry};
-use crate::plain::piece;
 use std::path::Path;
 
 /// Bytes of a name that may be misspelt; nobody types more.
@@ -116,7 +116,8 @@ pub(crate) fn meant<'a>(name: &str, candidates: &[Known<'a>]) -> Vec<&'a str> {
 
 /// "did you mean `x`?" where something may be meant, else the list of all that would do.
 pub(super) fn suggestion(name: &str, candidates: &[Known]) -> String {
-    let meant: Vec<String> = meant(name, candidates).iter().map(|name| format!("`{}`", piece(name))).collect();
+    let meant: Vec<String> =
+        meant(name, candidates).iter().map(|name| format!("`{}`", piece(name))).collect();
     if !meant.is_empty() {
         return format!("did you mean {}?", meant.join(" or "));
     }
