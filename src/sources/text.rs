@@ -5,7 +5,7 @@ mod number;
 
 use std::{
     fs::File,
-    io::{self, BufRead, BufReader, Read, Seek, SeekFrom},
+    io::{self, BufRead, BufReader, Read},
     path::Path,
 };
 
@@ -43,15 +43,13 @@ pub(super) struct HeaderLines<'a> {
     pub offset: u64,
     /// How many of them were lines.
     in_lines: u64,
-    /// Length of the file.
-    bytes: u64,
 }
 
 impl<'a> HeaderLines<'a> {
     /// Opens a file.
     pub fn open(path: &'a Path) -> Result<Self, SourceError> {
-        let (file, bytes) = file::open(path)?;
-        Ok(Self { path, reader: BufReader::new(file), line: 0, offset: 0, in_lines: 0, bytes })
+        let (file, _) = file::open(path)?;
+        Ok(Self { path, reader: BufReader::new(file), line: 0, offset: 0, in_lines: 0 })
     }
 
     /// The next line without its end, and without a mark in front of the first; `None` at the end of the file. Bytes that are
@@ -73,44 +71,6 @@ impl<'a> HeaderLines<'a> {
         let bytes = if is_first { without_mark(&bytes) } else { &bytes };
         let text = String::from_utf8_lossy(bytes);
         Ok(Some(text.trim_end_matches(['\n', '\r']).to_owned()))
-    }
-
-    /// Goes over so many bytes without reading them; whether the file has them.
-    pub fn skip_bytes(&mut self, bytes: u64) -> Result<bool, SourceError> {
-        let to = self.offset.saturating_add(bytes);
-        if to > self.bytes {
-            return Ok(false);
-        }
-        self.reader.seek(SeekFrom::Start(to)).map_err(|cause| file::io_error(self.path, cause))?;
-        self.offset = to;
-        Ok(true)
-    }
-
-    /// Goes over so many numbers or words; whether the file has them. The end of the last one's line comes next.
-    pub fn skip_words(&mut self, words: u64) -> Result<bool, SourceError> {
-        let (mut left, mut in_word) = (words, false);
-        while left > 0 {
-            let buffer = self.reader.fill_buf().map_err(|cause| file::io_error(self.path, cause))?;
-            if buffer.is_empty() {
-                return Ok(left == 1 && in_word);
-            }
-            let mut used = 0;
-            for byte in buffer {
-                let space = byte.is_ascii_whitespace();
-                if in_word && space {
-                    left -= 1;
-                }
-                in_word = !space;
-                if left == 0 {
-                    break;
-                }
-                used += 1;
-                self.line += u64::from(*byte == b'\n');
-            }
-            self.offset += used as u64;
-            self.reader.consume(used);
-        }
-        Ok(true)
     }
 
     /// Something wrong with the last line.
