@@ -82,7 +82,7 @@ impl Screen {
         let mut app = App::new();
         app.add_plugins(TyndallPlugins).insert_resource(gpu.clone());
         app.add_systems(bevy_app::Update, |fuse: Option<bevy_ecs::prelude::Res<Fuse>>| {
-            assert!(fuse.is_none(), "a bug")
+            assert!(fuse.is_none(), "a bug");
         });
         let scene = LiveScene::open(&mut app, &path, overrides);
         // No room for panels: the picture is as large as the screen, but for the bars.

@@ -387,7 +387,7 @@ impl<'a> Loader<'a> {
         if self.broken.contains(&(path.clone(), registration.type_id())) {
             return None;
         }
-        let mut own = Reader::new(self.registry, file.clone());
+        let mut own = Reader::new(self.registry, file);
         let value = own.whole_file(registration, name);
         reader.places.append(&mut own.places);
         if value.is_none() {

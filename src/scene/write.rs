@@ -100,7 +100,7 @@ impl<'r> Writer<'r> {
                 let default = default.flatten();
                 let short = shorthand(info).filter(|_| {
                     let first = known.first().and_then(|first| fields.field(first.name()));
-                    first.is_some_and(|first| is_there(first))
+                    first.is_some_and(is_there)
                 });
                 let open = short.map_or("(".to_owned(), |name| format!("{name}("));
                 self.fields(

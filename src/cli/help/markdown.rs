@@ -102,7 +102,9 @@ impl Layout {
             TagEnd::List(_) => drop(self.lists.pop()),
             TagEnd::TableCell => {
                 let cell = std::mem::take(&mut self.text);
-                self.rows.last_mut().map(|row| row.push(cell));
+                if let Some(row) = self.rows.last_mut() {
+                    row.push(cell);
+                }
             }
             TagEnd::Table => {
                 let rows = std::mem::take(&mut self.rows);

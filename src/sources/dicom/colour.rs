@@ -7,7 +7,7 @@ use super::{
     image::{Image, Kind},
     syntax::{Codec, Syntax},
 };
-use crate::sources::stored::{Stored, with_samples};
+use crate::sources::stored::{Element, Stored, with_samples};
 
 /// The colours of pixels of three numbers, brought to 8 bits.
 pub(super) fn of(
@@ -35,7 +35,7 @@ pub(super) fn of(
         colours
             .try_reserve_exact(count)
             .map_err(|_| SourceError::OutOfMemory { path: path.to_owned(), bytes: 4 * count as u64 })?;
-        colours.extend(samples.as_chunks().0.iter().map(|&[a, b, c]| colour([a as f64, b as f64, c as f64])));
+        colours.extend(samples.as_chunks().0.iter().map(|&[a, b, c]| colour([a.value(), b.value(), c.value()])));
     });
     Ok(colours)
 }
