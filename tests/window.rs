@@ -639,7 +639,7 @@ fn dropped_data_are_shown_and_saved_as_a_scene_that_is_followed() {
     let mut screen = Screen::new(BALL);
     screen.settle();
     let square = screen.file("meshes/square.obj", SQUARE);
-    screen.drop_files(&[square.clone()]);
+    screen.drop_files(std::slice::from_ref(&square));
     screen.settle();
     assert_eq!(screen.names(), ["camera", "fill light", "key light", "square"]);
     let [red, green, _] = screen.colour(0.0, 0.0);
@@ -680,7 +680,7 @@ fn dropped_data_are_shown_and_saved_as_a_scene_that_is_followed() {
 fn a_file_that_is_there_is_replaced_when_asked_for_twice_and_data_never() {
     let mut screen = Screen::new(BALL);
     let square = screen.file("square.obj", SQUARE);
-    screen.session.open(&[square.clone()]);
+    screen.session.open(std::slice::from_ref(&square));
     screen.settle();
     let taken = screen.file("taken.ron", "()");
     screen.session.act(Command::SaveAs(taken.clone()));
@@ -740,7 +740,7 @@ fn nobody_opens_something_else_over_unsaved_edits_unasked() {
     screen.settle();
     screen.set("Phong.shininess", 3.0_f32);
     let square = screen.file("square.obj", SQUARE);
-    screen.session.open(&[square.clone()]);
+    screen.session.open(std::slice::from_ref(&square));
     assert!(screen.names().contains(&"ball".to_owned()));
     screen.session.act(Command::SaveAndOpen(vec![square.clone()]));
     assert!(screen.text().contains("shininess: 3"), "{}", screen.text());

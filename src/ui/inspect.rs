@@ -98,7 +98,7 @@ fn transfer_function(
     }
     // What a preset makes is shown; whoever changes it has points of their own from then on.
     let mut own = function.in_force(data.histogram, data.domain);
-    let edits = editor.show(ui, name, &own.clone(), &data);
+    let edits = editor.show(ui, name, &own, &data);
     let Some(last) = edits.last() else { return edits };
     let finished = last.finished;
     match edits.iter().try_for_each(|edited| edited.apply(&mut own)) {

@@ -163,7 +163,7 @@ impl Header {
             }
             tags::ASPECT => self.aspect = pair(element, big)?,
             tags::SLICE_LOCATION => {
-                self.location = numbers(element, big)?.and_then(|all| all.first().copied())
+                self.location = numbers(element, big)?.and_then(|all| all.first().copied());
             }
             tags::FRAMES => self.frames = usize::try_from(whole(element, big)?.unwrap_or(1)).unwrap_or(0),
             tags::OFFSETS => self.offsets = numbers(element, big)?.unwrap_or_default(),

@@ -20,7 +20,7 @@ impl Palette {
         let numbers = shorts(&element.value, big_endian);
         match element.tag {
             tags::RED_LAYOUT | tags::GREEN_LAYOUT | tags::BLUE_LAYOUT => {
-                self.layout[(element.tag - tags::RED_LAYOUT) as usize] = numbers
+                self.layout[(element.tag - tags::RED_LAYOUT) as usize] = numbers;
             }
             tags::RED | tags::GREEN | tags::BLUE => self.data[(element.tag - tags::RED) as usize] = numbers,
             _ => {}

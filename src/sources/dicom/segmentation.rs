@@ -49,12 +49,11 @@ pub(super) fn assemble(
     let whole = if header.segments.form == Form::Fractional { header.segments.greatest.max(1) } else { 1 };
     let mut labels: Vec<u16> = Vec::new();
     let mut fractions: Vec<u8> = Vec::new();
-    for all in [pixels * planes.count] {
-        labels.try_reserve_exact(all).map_err(|_| out_of_memory())?;
-        labels.resize(all, 0);
-        fractions.try_reserve_exact(all).map_err(|_| out_of_memory())?;
-        fractions.resize(all, 0);
-    }
+    let all = pixels * planes.count;
+    labels.try_reserve_exact(all).map_err(|_| out_of_memory())?;
+    labels.resize(all, 0);
+    fractions.try_reserve_exact(all).map_err(|_| out_of_memory())?;
+    fractions.resize(all, 0);
     let mut shared = 0_u64;
     for (slice, plane) in slices.iter().zip(&planes.of_slice) {
         let mask = masks.get(slice.frame * pixels..(slice.frame + 1) * pixels).ok_or_else(out_of_memory)?;

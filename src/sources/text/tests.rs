@@ -30,18 +30,3 @@ fn numbers_are_read_however_programs_write_them() {
     assert_eq!(numbers::<u64>(" 1 2.0\t3 "), Some(vec![1, 2, 3]));
     assert_eq!(numbers::<u64>("1 x"), None);
 }
-
-#[test]
-fn lines_and_what_stands_between_them_are_counted() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a");
-    std::fs::write(&path, b"\xef\xbb\xbffirst\r\n1 2\n 3\r\nlast\nab\ncdend").unwrap();
-    let mut lines = HeaderLines::open(&path).unwrap();
-    assert_eq!((lines.next().unwrap().as_deref(), lines.line, lines.offset), (Some("first"), 1, 10));
-    assert!(lines.skip_words(3).unwrap());
-    assert_eq!((lines.next().unwrap().as_deref(), lines.line), (Some(""), 3));
-    assert_eq!((lines.next().unwrap().as_deref(), lines.line), (Some("last"), 4));
-    assert!(lines.skip_bytes(5).unwrap());
-    assert!(!lines.skip_bytes(4).unwrap() && !lines.skip_words(2).unwrap());
-    assert_eq!(lines.next().unwrap(), None);
-}

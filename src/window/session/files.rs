@@ -143,6 +143,7 @@ impl Session {
     }
 
     /// The path of a scene, and its text if it is in no file; what is wrong where it cannot be shown.
+    #[allow(clippy::result_large_err, reason = "a problem is met once, when a person opens a file")]
     fn read(&self, files: &[PathBuf]) -> Result<(PathBuf, Option<String>), Problem> {
         let registry = self.app.world().resource::<AppTypeRegistry>().clone();
         let registry = registry.read();
@@ -265,6 +266,7 @@ impl Session {
     }
 }
 
+#[allow(clippy::result_large_err, reason = "a problem is met once, when a person opens a file")]
 fn first_error(problems: Vec<Problem>) -> Result<(), Problem> {
     match problems.into_iter().find(|problem| problem.severity == Severity::Error) {
         Some(problem) => Err(problem),
