@@ -201,7 +201,7 @@ fn load_meshes(
                 problems
             }
             // What was loaded last stays.
-            Err(problem) => vec![problem.on(entity, "Mesh.path")],
+            Err(error) => vec![Problem::error(error.to_string()).on(entity, "Mesh.path")],
         };
         commands.entity(entity).insert(ReadFor(mesh.clone()));
         FilesRead::set(&mut commands, entity, "Mesh", files);
@@ -209,27 +209,9 @@ fn load_meshes(
     }
 }
 
-/// What a mesh file that is there, but is no OBJ file by its name, is told.
-fn unsupported(path: &Path) -> Option<Problem> {
-    let ending = path.extension()?.to_string_lossy();
-    if ending.eq_ignore_ascii_case("obj") {
-        return None;
-    }
-    trail::note(path);
-    if !path.is_file() {
-        return None;
-    }
-    let message = format!("{}: expected an .obj file, found .{ending}", path.display());
-    Some(Problem::error(message).help("export the mesh as Wavefront OBJ"))
-}
-
-fn read_mesh(mesh: &Mesh) -> Result<MeshData, Box<Problem>> {
+fn read_mesh(mesh: &Mesh) -> Result<MeshData, SourceError> {
     Ok(match mesh {
-        Mesh::File { path, normals } => match unsupported(path.path()) {
-            Some(problem) => return Err(Box::new(problem)),
-            None => sources::read_obj(path.path(), *normals)
-                .map_err(|error| Box::new(Problem::error(error.to_string())))?,
-        },
+        Mesh::File { path, normals } => sources::read_mesh(path.path(), *normals)?,
         Mesh::Sphere { radius, subdivisions } => sources::procedural::sphere(*radius, *subdivisions),
         Mesh::Box { size } => sources::procedural::cuboid(*size),
         Mesh::Plane { size } => sources::procedural::plane(*size),

@@ -9,12 +9,14 @@ pub use crate::sources::mesh::Normals;
 ///
 /// | variant | fields | range | default |
 /// |---|---|---|---|
-/// | `File` | `path` of a Wavefront OBJ file, which alone needs no name | – | – |
+/// | `File` | `path` of a Wavefront OBJ, PLY, STL or glTF file, plain or in gzip, which alone needs no name | – | – |
 /// | | `normals`: `Auto` (the file's; else by its smoothing groups; else `Smooth(40.0)`), `Flat`, or `Smooth(degrees)`: means over the faces that meet at no more than this angle | 0 to 180 | `Auto` |
 /// | `Sphere` | `radius`, scene units; `subdivisions` of an icosahedron | above 0; 0 to 8 | 1.0; 5 |
 /// | `Box` | `size` along x, y and z, scene units | above 0 | (1, 1, 1) |
 /// | `Plane` | `size` along x and z, scene units; it faces +y | above 0 | (1, 1) |
 /// | `CornellBox` | a room of side 2 about the origin, open towards +z | – | – |
+///
+/// One unit of a file is one scene unit; a metre of glTF too. Triangles of a part are turned to face one way, those of a closed part outwards.
 ///
 /// ```ron
 /// Mesh: File("../assets/knot.obj")
@@ -26,7 +28,7 @@ pub use crate::sources::mesh::Normals;
 #[reflect(@AlsoCalled(&["Model", "Geometry", "Object", "Shape", "Surface", "Obj", "Ply", "Stl", "Gltf", "Sphere", "Cube", "Box", "Plane"]))]
 #[require(Transform, Placement)]
 pub enum Mesh {
-    /// Read from a Wavefront OBJ file.
+    /// Read from a file: Wavefront OBJ, PLY, STL or glTF.
     #[reflect(@AlsoCalled(&["Obj", "Wavefront", "Ply", "Stl", "Gltf", "Glb", "Model", "Load", "Path", "Import"]))]
     File {
         /// The file.

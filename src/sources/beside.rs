@@ -42,7 +42,7 @@ pub(super) fn beside(header: &Path, names: &[String], notes: &mut Vec<String>) -
 }
 
 /// Where a file is that is not where its name says; `None` if the name leaves nothing to try.
-fn in_place_of(folder: &Path, name: &str) -> Option<PathBuf> {
+pub(super) fn in_place_of(folder: &Path, name: &str) -> Option<PathBuf> {
     let name = name.trim_matches('"');
     let slashed = name.replace('\\', "/");
     let has_drive = slashed.as_bytes().get(1) == Some(&b':') && slashed.as_bytes()[0].is_ascii_alphabetic();

@@ -1,21 +1,34 @@
 //! Triangle meshes in memory.
 
 mod assemble;
+pub(super) mod colour;
 mod creases;
+pub(super) mod draft;
 mod extremes;
+mod finish;
+mod inside;
+mod join;
 mod material;
 mod normals;
+mod options;
 mod orient;
+mod origin;
+mod outline;
+pub(super) mod phong;
 mod refine;
 mod statistics;
+mod topology;
+pub(super) mod triangulate;
+mod weld;
+mod words;
 
 use glam::{DVec3, Vec2, Vec3};
 
-pub(super) use assemble::counted;
-pub use creases::{CREASE_DEGREES, Normals};
 pub use extremes::extremes;
 pub use material::{MeshMaterial, MeshPart, MeshSubsurface, TextureImage};
+pub use options::{CREASE_DEGREES, Normals};
 pub use statistics::MeshStatistics;
+pub(super) use words::{counted, listed, quoted};
 
 /// A triangle mesh: every vertex is used, finite and has a unit normal; no triangle has zero area.
 ///
@@ -55,18 +68,6 @@ impl MeshData {
         assemble::assemble(positions, normals, triangles)
     }
 
-    /// The same for triangles out of a file: those of connected parts are turned so that they agree, and outwards where the part is closed;
-    /// normals come about by `rule`. `groups` are the smoothing groups of the triangles, if the file has any.
-    pub(super) fn from_file(
-        positions: &[Vec3],
-        normals: &[Vec3],
-        triangles: &[[u32; 3]],
-        groups: Option<&[u32]>,
-        rule: Normals,
-    ) -> Self {
-        assemble::assemble_file(positions, normals, triangles, groups, rule)
-    }
-
     /// The least and greatest corner of the axis-aligned box around the vertices, relative to the origin; `None` without any.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let first = *self.positions.first()?;
@@ -81,5 +82,9 @@ impl MeshData {
     }
 }
 
+#[cfg(test)]
+mod crease_tests;
+#[cfg(test)]
+mod orient_tests;
 #[cfg(test)]
 mod tests;

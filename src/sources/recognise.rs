@@ -1,6 +1,6 @@
 //! What a file is, by how it begins: for those who are given a file and not told.
 
-use super::{file, raw::GZIP_MAGIC, self_describing};
+use super::{file, mesh_file, raw::GZIP_MAGIC, self_describing};
 use flate2::read::MultiGzDecoder;
 use std::io::Read;
 use std::path::Path;
@@ -44,7 +44,8 @@ pub fn recognise(path: &Path) -> Option<Kind> {
         }
         VOLUMES.contains(&inner.as_str()).then_some(Kind::Volume { in_patient: false })
     };
-    if is_mesh(&head) {
+    let bytes = std::fs::metadata(path).map_or(0, |metadata| metadata.len());
+    if mesh_file::format_of_content(&head, bytes).is_some() {
         return Some(Kind::Mesh);
     }
     self_describing::in_patient(&head, &inner).map(|in_patient| Kind::Volume { in_patient }).or_else(by_name)
@@ -62,28 +63,6 @@ fn head(path: &Path) -> Option<Vec<u8>> {
         file.take(HEAD).read_to_end(&mut head).ok()?;
     }
     Some(head)
-}
-
-fn is_mesh(head: &[u8]) -> bool {
-    let is_ply = head.starts_with(b"ply\n") || head.starts_with(b"ply\r");
-    let is_stl = head.starts_with(b"solid ") && String::from_utf8_lossy(head).contains("facet normal");
-    is_ply || is_stl || head.starts_with(b"glTF") || is_obj(head)
-}
-
-/// OBJ has no magic: its first statement that is no comment is one of few, and a vertex follows soon.
-fn is_obj(head: &[u8]) -> bool {
-    let Ok(text) = std::str::from_utf8(&head[..head.len().saturating_sub(4)]) else { return false };
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut statements =
-        text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
-    let word = |line: &str| line.split_whitespace().next().unwrap_or_default().to_owned();
-    let first = statements.next().map(word).unwrap_or_default();
-    let is_first = ["v", "mtllib", "o", "g", "vt", "vn"].contains(&first.as_str());
-    let is_vertex = |line: &str| {
-        word(line) == "v"
-            && line.split_whitespace().skip(1).take(3).filter_map(|n| n.parse::<f64>().ok()).count() == 3
-    };
-    is_first && text.lines().any(is_vertex)
 }
 
 #[cfg(test)]
@@ -105,6 +84,11 @@ mod tests {
         assert_eq!(recognised("a.obj", obj), Some(Kind::Mesh));
         assert_eq!(recognised("model", obj), Some(Kind::Mesh));
         assert_eq!(recognised("a.ply", b"ply\nformat ascii 1.0\n"), Some(Kind::Mesh));
+        assert_eq!(recognised("b", b"ply\r\nformat ascii 1.0\r\n"), Some(Kind::Mesh));
+        assert_eq!(recognised("c", b"solid\nfacet normal 0 0 1\n"), Some(Kind::Mesh));
+        let stl = [&[7; 80][..], &1_u32.to_le_bytes(), &[0; 50]].concat();
+        assert_eq!((recognised("d", &stl), recognised("d", &stl[1..])), (Some(Kind::Mesh), None));
+        assert_eq!(recognised("e", b"{ \"asset\": { \"version\": \"2.0\" } }"), Some(Kind::Mesh));
         assert_eq!(recognised("a.nrrd", b"NRRD0004\ntype: uchar\n"), volume);
         assert_eq!(recognised("b.nrrd", b"NRRD0004\nspace: left-posterior-superior\n"), patient);
         assert_eq!(recognised("a.vtk", b"# vtk DataFile Version 3.0\n"), volume);

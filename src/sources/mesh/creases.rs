@@ -1,90 +1,106 @@
-//! Normals of corners, with hard edges where faces meet at more than an angle or belong to different smoothing groups.
+//! Normals of surfaces that have edges.
+//!
+//! Around a vertex, triangles that meet at soft edges share a normal: the sum of theirs, each weighted by its angle at the vertex (see
+//! [`super::normals`]). An edge is hard if its triangles meet at more than the crease angle, or if the file puts them into different
+//! smoothing groups; an edge of more than two triangles is soft between those that go through it in opposite directions.
 
-use super::{assemble::weld, normals};
-use bevy_reflect::{Reflect, std_traits::ReflectDefault};
+use super::draft::{NONE, Sparse};
+use super::normals;
+use super::topology::{Edges, Unions, ends_of};
 use glam::{DVec3, Vec3};
 
-/// How the normals of a mesh come about.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
-#[reflect(Default, PartialEq)]
-pub enum Normals {
-    /// Those of the file; where it has none, by its smoothing groups; where it has none of those either, `Smooth(40.0)`.
-    #[default]
-    Auto,
-    /// Those of the faces, whatever the file says.
-    Flat,
-    /// Means over the faces that meet at no more than this angle, in degrees, whatever the file says; 180 rounds every edge.
-    Smooth(#[reflect(@crate::components::Range::new(0.0, 180.0), @crate::components::Unit("degrees"))] f32),
-}
+/// Triangles of one edge that are compared with each other; what lies beyond only with the one before.
+const MOST_COMPARED: usize = 8;
 
-/// The angle, in degrees, beyond which edges are hard where nobody says otherwise.
-pub const CREASE_DEGREES: f32 = 40.0;
-
-/// Faces around a point among which hard edges are looked for; around more all are smooth, since each is compared with each.
-const MOST_FACES: usize = 512;
-
-/// Which faces around a point are smoothed together.
+/// What makes an edge hard.
 #[derive(Clone, Copy)]
-pub(super) enum Rule<'a> {
-    /// Those that meet at no more than this angle, in degrees.
-    Crease(f32),
-    /// Those of the same group, of which there is one for each triangle; 0 stands for none.
-    Groups(&'a [u32]),
+pub(super) enum Creases<'a> {
+    /// Triangles that meet at more than so many degrees.
+    Angle(f32),
+    /// Different smoothing groups, or group 0, of faces; where neither says a group, more than so many degrees.
+    Groups {
+        /// By face.
+        groups: &'a Sparse,
+        /// The face of each triangle.
+        faces: &'a [u32],
+        /// Degrees.
+        otherwise: f32,
+    },
 }
 
-impl Rule<'_> {
-    fn joins(&self, facing: &[DVec3], one: usize, other: usize) -> bool {
-        match *self {
-            Self::Crease(degrees) => {
-                let cosine = f64::from(degrees).to_radians().cos();
-                one == other || facing[one].dot(facing[other]) >= cosine - 1e-6
+/// Triangles of vertices, of which there is one for each position, and how they face.
+pub(super) struct Surface<'a> {
+    pub positions: &'a [Vec3],
+    pub triangles: &'a [[u32; 3]],
+    pub edges: &'a Edges,
+}
+
+impl Surface<'_> {
+    /// One normal per corner: corner `i` of triangle `t` is at `3 t + i`.
+    pub fn normals(&self, creases: Creases<'_>) -> Vec<Vec3> {
+        let facings: Vec<DVec3> = self.triangles.iter().map(|&triangle| self.facing(triangle)).collect();
+        let mut fans = Unions::new(3 * self.triangles.len());
+        for edge in self.edges.iter() {
+            for (place, &a) in edge.iter().enumerate() {
+                let compared = if place < MOST_COMPARED { 0 } else { place - 1 };
+                for &b in &edge[compared..place] {
+                    if self.is_soft(a, b, &facings, creases) {
+                        fans.join(a, next(b));
+                        fans.join(next(a), b);
+                    }
+                }
             }
-            Self::Groups(groups) => one == other || groups[one] == groups[other] && groups[one] != 0,
         }
+        self.sum(&facings, fans)
+    }
+
+    /// The normal of its triangle for each corner.
+    pub fn flat_normals(&self) -> Vec<Vec3> {
+        self.triangles.iter().flat_map(|&triangle| [self.facing(triangle).as_vec3(); 3]).collect()
+    }
+
+    fn is_soft(&self, a: u32, b: u32, facings: &[DVec3], creases: Creases<'_>) -> bool {
+        let (t, u) = (a as usize / 3, b as usize / 3);
+        // Triangles that do not agree which way the surface faces have no common normal.
+        if ends_of(self.triangles, a) == ends_of(self.triangles, b) {
+            return false;
+        }
+        let meets_within = |degrees: f32| {
+            let angle = facings[t].cross(facings[u]).length().atan2(facings[t].dot(facings[u]));
+            angle <= f64::from(degrees).to_radians() + 1e-6
+        };
+        match creases {
+            Creases::Angle(degrees) => meets_within(degrees),
+            Creases::Groups { groups, faces, otherwise } => {
+                match [t, u].map(|triangle| groups.get(faces[triangle] as usize)) {
+                    [NONE, NONE] => meets_within(otherwise),
+                    [first, second] => first == second && first != 0,
+                }
+            }
+        }
+    }
+
+    /// The normal of each corner's fan.
+    fn sum(&self, facings: &[DVec3], mut fans: Unions) -> Vec<Vec3> {
+        let corners = 3 * self.triangles.len() as u32;
+        let mut sums = vec![normals::Sum::default(); corners as usize];
+        for corner in 0..corners {
+            let [a, b, c] = [0, 1, 2].map(|turn| {
+                let triangle = self.triangles[corner as usize / 3];
+                self.positions[triangle[(corner as usize + turn) % 3] as usize]
+            });
+            sums[fans.find(corner) as usize].add(facings[corner as usize / 3], normals::angle_at(a, b, c));
+        }
+        (0..corners).map(|corner| sums[fans.find(corner) as usize].normal()).collect()
+    }
+
+    fn facing(&self, triangle: [u32; 3]) -> DVec3 {
+        let [a, b, c] = triangle.map(|vertex| self.positions[vertex as usize]);
+        normals::facing(a, b, c).unwrap_or_default()
     }
 }
 
-/// One normal for each corner of each triangle: angle-weighted over the faces that are smoothed together.
-pub(super) fn corner_normals(positions: &[Vec3], triangles: &[[u32; 3]], rule: Rule) -> Vec<[Vec3; 3]> {
-    let welded = weld(positions);
-    let facing: Vec<DVec3> = triangles
-        .iter()
-        .map(|triangle| {
-            let [a, b, c] = triangle.map(|index| positions[index as usize]);
-            normals::facing(a, b, c).unwrap_or(DVec3::ZERO)
-        })
-        .collect();
-    // The corners at each point, one run after the other.
-    let mut corners: Vec<(u32, u32, u8)> = triangles
-        .iter()
-        .zip(0_u32..)
-        .flat_map(|(triangle, index)| {
-            (0..3_u8).map(move |corner| (triangle[usize::from(corner)], index, corner))
-        })
-        .map(|(vertex, triangle, corner)| (welded[vertex as usize], triangle, corner))
-        .collect();
-    corners.sort_unstable();
-    let mut computed = vec![[normals::FALLBACK; 3]; triangles.len()];
-    for around in corners.chunk_by(|a, b| a.0 == b.0) {
-        let weighted: Vec<(usize, DVec3)> = around
-            .iter()
-            .map(|&(_, triangle, corner)| {
-                let index = triangle as usize;
-                let corners = triangles[index].map(|vertex| positions[vertex as usize]);
-                let at = |step: usize| corners[(usize::from(corner) + step) % 3];
-                (index, normals::angle_at(at(0), at(1), at(2)) * facing[index])
-            })
-            .collect();
-        for &(_, triangle, corner) in around {
-            let own = triangle as usize;
-            let joined = weighted
-                .iter()
-                .filter(|(other, _)| around.len() > MOST_FACES || rule.joins(&facing, own, *other))
-                .map(|(_, normal)| *normal)
-                .sum::<DVec3>();
-            computed[own][usize::from(corner)] =
-                normals::unit(joined).or(normals::unit(facing[own])).unwrap_or(normals::FALLBACK);
-        }
-    }
-    computed
+/// The corner after a corner of the same triangle; also the corner that a side goes to, if a side's number is that of the one it comes from.
+fn next(corner: u32) -> u32 {
+    if corner % 3 == 2 { corner - 2 } else { corner + 1 }
 }

@@ -47,6 +47,13 @@ impl Default for MeshMaterial {
     }
 }
 
+impl MeshMaterial {
+    /// A diffuse white surface: what a picture, or colours of vertices, may colour as they are.
+    pub(in crate::sources) fn white() -> Self {
+        Self { diffuse: Vec3::ONE, ..Self::default() }
+    }
+}
+
 /// A medium that light enters and is scattered in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshSubsurface {

@@ -28,9 +28,30 @@ pub(super) fn facing(a: Vec3, b: Vec3, c: Vec3) -> Option<DVec3> {
     if scale > 0.0 && cross.is_finite() { Some((cross / scale).normalize()) } else { None }
 }
 
-/// One unit normal per position, equal where `welded` names the same position; all triangles must lie inside `positions`.
-pub(super) fn angle_weighted(positions: &[Vec3], welded: &[u32], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-    let mut sums = vec![(DVec3::ZERO, 0.0); positions.len()];
+/// A normal in the making.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Sum {
+    sum: DVec3,
+    weight: f64,
+}
+
+impl Sum {
+    /// Adds the normal of a triangle, by its angle at the vertex.
+    pub fn add(&mut self, normal: DVec3, angle: f64) {
+        self.sum += angle * normal;
+        self.weight += angle;
+    }
+
+    /// The direction of what was added.
+    pub fn normal(&self) -> Vec3 {
+        let has_direction = self.sum.length() > MIN_RELATIVE_LENGTH * self.weight;
+        if has_direction { unit(self.sum).unwrap_or(FALLBACK) } else { FALLBACK }
+    }
+}
+
+/// One unit normal per vertex, over all triangles that meet there.
+pub(super) fn angle_weighted(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let mut sums = vec![Sum::default(); positions.len()];
     for triangle in triangles {
         let corners = triangle.map(|index| positions[index as usize]);
         let Some(normal) = facing(corners[0], corners[1], corners[2]) else {
@@ -38,16 +59,10 @@ pub(super) fn angle_weighted(positions: &[Vec3], welded: &[u32], triangles: &[[u
         };
         for corner in 0..3 {
             let angle = angle_at(corners[corner], corners[(corner + 1) % 3], corners[(corner + 2) % 3]);
-            let (sum, weight) = &mut sums[welded[triangle[corner] as usize] as usize];
-            *sum += angle * normal;
-            *weight += angle;
+            sums[triangle[corner] as usize].add(normal, angle);
         }
     }
-    let of_welded = |&first: &u32| {
-        let (sum, weight) = sums[first as usize];
-        if sum.length() > MIN_RELATIVE_LENGTH * weight { unit(sum).unwrap_or(FALLBACK) } else { FALLBACK }
-    };
-    welded.iter().map(of_welded).collect()
+    sums.iter().map(Sum::normal).collect()
 }
 
 /// The angle at `a` between the edges to `b` and `c`, in radians.

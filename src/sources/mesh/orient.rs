@@ -1,221 +1,267 @@
-//! Faces of connected parts turned so that they agree, and outwards where the part is closed.
+//! Triangles of a part that face one way.
+//!
+//! A *part* is what can be reached over edges of exactly two triangles. Within one, two triangles agree if they go through their common
+//! edge in opposite directions, so one triangle decides for all (as in VTK's `vtkPolyDataNormals`). Which way that is:
+//!
+//! - A part that is closed faces outwards: the volume that it encloses is positive. One that lies inside another closed part keeps facing
+//!   it or facing away from it, as the file has it: that is a cavity, or a body inside a body.
+//! - Any other part faces the way of its normals if the file gives all of them, else of the greater part of its area.
+//! - A part that cannot be made to agree, such as a Möbius strip, stays as it is.
+//!
+//! Normals that the file gives are then turned where those of the triangles that were turned, or of the others, point backwards on the
+//! whole. Where nothing has to be turned nothing is changed.
 
-use super::assemble::{counted, weld};
+use super::draft::NONE;
+use super::inside;
+use super::topology::{Edges, ends_of};
+use super::words::counted;
 use glam::{DVec3, Vec3};
 
-/// Turns triangles over, and tells how many in `notes`. What agrees already, and faces outwards where it is closed, stays as it is.
-///
-/// A closed part that faces inwards and lies within another is taken for the wall of a hollow. A part that cannot agree with itself, as a
-/// Möbius strip, stays as it is.
-pub(super) fn orient(positions: &[Vec3], triangles: &mut [[u32; 3]], notes: &mut Vec<String>) {
-    let welded = weld(positions);
-    let neighbours = Neighbours::new(&welded, triangles);
-    let parts = neighbours.parts(triangles.len());
-    let boxes: Vec<Option<(DVec3, DVec3)>> = parts
-        .iter()
-        .map(|part| part.is_closed.then(|| bounds(positions, triangles, &part.triangles)))
-        .collect();
-    let (mut turned, mut twisted) = (0_u64, 0_u64);
-    for (index, part) in parts.iter().enumerate() {
-        if part.is_twisted {
-            twisted += 1;
-            continue;
-        }
-        let against = part.triangles.iter().filter(|(_, is_turned)| *is_turned).count();
-        let all_others = if part.is_closed {
-            let volume: f64 = part
-                .triangles
-                .iter()
-                .map(|&(triangle, is_turned)| {
-                    let sign = if is_turned { -1.0 } else { 1.0 };
-                    sign * volume(positions, triangles[triangle as usize], part_origin(&boxes[index]))
-                })
-                .sum();
-            let is_hollow = against == 0
-                && boxes
-                    .iter()
-                    .enumerate()
-                    .any(|(other, around)| other != index && is_within(&boxes[index], around));
-            volume < 0.0 && !is_hollow
-        } else {
-            // The way of most of them.
-            2 * against > part.triangles.len()
-        };
-        for &(triangle, is_turned) in &part.triangles {
-            if is_turned != all_others {
-                triangles[triangle as usize].swap(1, 2);
-                turned += 1;
-            }
-        }
-    }
-    if turned > 0 {
-        let all = counted(triangles.len() as u64, "triangle");
-        notes.push(format!("{turned} of {all} turned over, so that parts agree and face outwards"));
-    }
-    if twisted > 0 {
-        notes.push(format!("{} with one side only left as they are", counted(twisted, "part")));
+/// Volumes smaller than this, relative to the 3/2nd power of the area, are rounding errors of surfaces that enclose none.
+const MIN_RELATIVE_VOLUME: f64 = 1e-9;
+
+/// Normals that agree, or disagree, with less than this share of the area do not say which way it faces.
+const MIN_AGREEMENT: f64 = 0.25;
+
+/// The triangles of a mesh, as far as their orientation goes.
+pub(super) struct Facing<'a> {
+    /// By vertex.
+    pub positions: &'a [Vec3],
+    /// Triangles of vertices, of which there is one for each position.
+    pub triangles: &'a [[u32; 3]],
+    /// How far the given normals of a triangle point where the triangle faces, -1 to 1; `None` if any is missing.
+    pub agreement: &'a dyn Fn(usize) -> Option<f64>,
+}
+
+impl Facing<'_> {
+    fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|vertex| self.positions[vertex as usize].as_dvec3())
     }
 }
 
-fn part_origin(bounds: &Option<(DVec3, DVec3)>) -> DVec3 {
-    bounds.map_or(DVec3::ZERO, |(low, high)| (low + high) / 2.0)
+/// What has to be turned.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Turned {
+    /// Whether each triangle is to be turned over; empty if none is.
+    pub triangles: Vec<bool>,
+    /// Whether the normals of each triangle are to be turned; empty if none are.
+    pub normals: Vec<bool>,
+    /// What to tell of it.
+    pub notes: Vec<String>,
 }
 
-fn is_within(inner: &Option<(DVec3, DVec3)>, outer: &Option<(DVec3, DVec3)>) -> bool {
-    match (inner, outer) {
-        (Some(inner), Some(outer)) => inner.0.cmpgt(outer.0).all() && inner.1.cmplt(outer.1).all(),
-        _ => false,
-    }
+/// Finds out which triangles, and which given normals, face the wrong way.
+pub(super) fn orient(facing: &Facing<'_>, edges: &Edges, partners: &[u32]) -> Turned {
+    let mut parts = Parts::of(facing, partners);
+    parts.find_open(facing, edges);
+    let turned = parts.turned_triangles(facing);
+    let normals = parts.turned_normals(facing, &turned);
+    let count = |turned: &[bool]| turned.iter().filter(|&&turned| turned).count() as u64;
+    let all = counted(facing.triangles.len() as u64, "triangle");
+    let one_sided = parts.parts.iter().filter(|part| part.is_one_sided).count() as u64;
+    let notes = [
+        (
+            count(&turned),
+            format!(
+                "{} of {all} turned over, so that parts face one way and closed ones outwards",
+                count(&turned)
+            ),
+        ),
+        (
+            count(&normals),
+            format!(
+                "normals of {} of {all} turned: they pointed to the back of the surface",
+                count(&normals)
+            ),
+        ),
+        (
+            one_sided,
+            format!(
+                "{} with one side only, like a Möbius strip, facing as in the file",
+                counted(one_sided, "part")
+            ),
+        ),
+    ];
+    let notes = notes.into_iter().filter_map(|(count, note)| (count > 0).then_some(note)).collect();
+    let unless_none = |turned: Vec<bool>| if turned.contains(&true) { turned } else { Vec::new() };
+    Turned { triangles: unless_none(turned), normals: unless_none(normals), notes }
 }
 
-fn bounds(positions: &[Vec3], triangles: &[[u32; 3]], part: &[(u32, bool)]) -> (DVec3, DVec3) {
-    let corners = part.iter().flat_map(|(triangle, _)| triangles[*triangle as usize]);
-    corners
-        .map(|corner| positions[corner as usize].as_dvec3())
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| {
-            (low.min(corner), high.max(corner))
-        })
-}
-
-/// Six times the volume between a triangle and a point.
-fn volume(positions: &[Vec3], triangle: [u32; 3], origin: DVec3) -> f64 {
-    let [a, b, c] = triangle.map(|corner| positions[corner as usize].as_dvec3() - origin);
-    a.dot(b.cross(c))
-}
-
-/// The edges of each triangle that exactly one other has too.
-struct Neighbours {
-    /// For each edge a to b, b to c and c to a of each triangle: the other triangle, and whether it runs along the edge the same way, so
-    /// that one of both is to be turned.
-    across: Vec<[Option<(u32, bool)>; 3]>,
-}
-
-/// Triangles that hang together, each with whether it is to be turned to agree with the first.
+/// What was found out about a part.
+#[derive(Debug, Clone, Default)]
 struct Part {
-    triangles: Vec<(u32, bool)>,
-    is_closed: bool,
-    is_twisted: bool,
+    /// The area of the triangles that agree with the first one, and of the others.
+    area: [f64; 2],
+    /// Whether it cannot be made to agree.
+    is_one_sided: bool,
+    /// Whether it has a border.
+    is_open: bool,
+    /// The volume that it encloses if all triangles agree with the first one.
+    volume: f64,
+    /// A point near it, which volumes are summed about.
+    anchor: DVec3,
+    /// The area whose normals agree with where triangles face if they all agree with the first one; NaN if some have no normals.
+    agreement: f64,
+    bounds: (DVec3, DVec3),
 }
 
-impl Neighbours {
-    fn new(welded: &[u32], triangles: &[[u32; 3]]) -> Self {
-        // (edge, triangle, which edge of it, whether it runs upwards)
-        let mut edges: Vec<(u64, u32, u8, bool)> = Vec::with_capacity(3 * triangles.len());
-        for (triangle, index) in triangles.iter().zip(0_u32..) {
-            for side in 0..3_u8 {
-                let from = welded[triangle[usize::from(side)] as usize];
-                let to = welded[triangle[usize::from(side + 1) % 3] as usize];
-                let key = u64::from(from.min(to)) << 32 | u64::from(from.max(to));
-                edges.push((key, index, side, from < to));
-            }
-        }
-        edges.sort_unstable();
-        let mut across = vec![[None; 3]; triangles.len()];
-        for shared in edges.chunk_by(|a, b| a.0 == b.0) {
-            if let [one, other] = shared {
-                let same_way = one.3 == other.3;
-                across[one.1 as usize][usize::from(one.2)] = Some((other.1, same_way));
-                across[other.1 as usize][usize::from(other.2)] = Some((one.1, same_way));
-            }
-        }
-        Self { across }
+impl Part {
+    /// Whether the greater part of its area disagrees with the first triangle.
+    fn differs(&self) -> bool {
+        self.area[1] > self.area[0]
     }
 
-    fn parts(&self, triangles: usize) -> Vec<Part> {
-        let mut turn: Vec<Option<bool>> = vec![None; triangles];
-        let mut parts = Vec::new();
-        for first in 0..triangles as u32 {
-            if turn[first as usize].is_some() {
-                continue;
+    /// The volume as most of its area has it; nothing if it encloses none.
+    fn written_volume(&self) -> Option<f64> {
+        let area = self.area[0] + self.area[1];
+        let encloses = !self.is_open && self.volume.abs() > MIN_RELATIVE_VOLUME * area.powf(1.5);
+        encloses.then_some(if self.differs() { -self.volume } else { self.volume })
+    }
+}
+
+/// The parts of a mesh, and how each triangle is to the first one of its part.
+struct Parts {
+    parts: Vec<Part>,
+    part_of: Vec<u32>,
+    /// Whether each triangle disagrees with the first one of its part.
+    differs: Vec<bool>,
+}
+
+impl Parts {
+    fn of(facing: &Facing<'_>, partners: &[u32]) -> Self {
+        let count = facing.triangles.len();
+        let mut found = Self { parts: Vec::new(), part_of: vec![NONE; count], differs: vec![false; count] };
+        for first in 0..count {
+            if found.part_of[first] == NONE {
+                found.add_part(facing, partners, first);
             }
-            turn[first as usize] = Some(false);
-            let mut part = Part { triangles: vec![(first, false)], is_closed: true, is_twisted: false };
-            let mut next = 0;
-            while let Some(&(triangle, is_turned)) = part.triangles.get(next) {
-                next += 1;
-                for across in self.across[triangle as usize] {
-                    let Some((other, same_way)) = across else {
-                        part.is_closed = false;
-                        continue;
-                    };
-                    let wanted = is_turned != same_way;
-                    match turn[other as usize] {
-                        None => {
-                            turn[other as usize] = Some(wanted);
-                            part.triangles.push((other, wanted));
-                        }
-                        Some(known) => part.is_twisted |= known != wanted,
-                    }
+        }
+        found
+    }
+
+    /// Walks over all that can be reached from a triangle.
+    fn add_part(&mut self, facing: &Facing<'_>, partners: &[u32], first: usize) {
+        let index = self.parts.len() as u32;
+        let anchor = facing.corners(first)[0];
+        let mut part = Part { anchor, bounds: (anchor, anchor), ..Part::default() };
+        let mut reached = vec![first];
+        self.part_of[first] = index;
+        while let Some(triangle) = reached.pop() {
+            self.measure(facing, triangle, &mut part);
+            for side in 3 * triangle..3 * triangle + 3 {
+                let partner = partners[side];
+                if partner == NONE {
+                    continue;
+                }
+                let beside = partner as usize / 3;
+                let agree = ends_of(facing.triangles, side as u32).0 == ends_of(facing.triangles, partner).1;
+                let differs = self.differs[triangle] != !agree;
+                if self.part_of[beside] == NONE {
+                    self.part_of[beside] = index;
+                    self.differs[beside] = differs;
+                    reached.push(beside);
+                } else if self.differs[beside] != differs {
+                    part.is_one_sided = true;
                 }
             }
-            parts.push(part);
         }
-        parts
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::sources::procedural;
-
-    fn oriented(mut triangles: Vec<[u32; 3]>, positions: &[Vec3]) -> (Vec<[u32; 3]>, Vec<String>) {
-        let mut notes = Vec::new();
-        orient(positions, &mut triangles, &mut notes);
-        (triangles, notes)
+        self.parts.push(part);
     }
 
-    #[test]
-    fn closed_parts_face_outwards_whichever_way_they_did() {
-        let ball = procedural::sphere(1.0, 2);
-        let right = ball.triangles.clone();
-        assert_eq!(oriented(right.clone(), &ball.positions), (right.clone(), vec![]));
-        let turned = |every: usize| {
-            let turn = |(index, [a, b, c]): (usize, &[u32; 3])| {
-                if index % every == 0 { [*a, *c, *b] } else { [*a, *b, *c] }
-            };
-            right.iter().enumerate().map(turn).collect::<Vec<_>>()
+    /// Adds a triangle to what is known of its part.
+    fn measure(&self, facing: &Facing<'_>, triangle: usize, part: &mut Part) {
+        let [a, b, c] = facing.corners(triangle);
+        for corner in [a, b, c] {
+            part.bounds = (part.bounds.0.min(corner), part.bounds.1.max(corner));
+        }
+        let sign = if self.differs[triangle] { -1.0 } else { 1.0 };
+        let area = (b - a).cross(c - a).length() / 2.0;
+        part.area[usize::from(self.differs[triangle])] += area;
+        let [a, b, c] = [a, b, c].map(|corner| corner - part.anchor);
+        part.volume += sign * a.dot(b.cross(c)) / 6.0;
+        part.agreement += sign * area * (facing.agreement)(triangle).unwrap_or(f64::NAN);
+    }
+
+    /// Marks the parts that have a border: an edge at which their triangles do not cancel.
+    fn find_open(&mut self, facing: &Facing<'_>, edges: &Edges) {
+        let mut sides = Vec::new();
+        for edge in edges.iter().filter(|edge| edge.len() != 2) {
+            sides.clear();
+            sides.extend(edge.iter().map(|&side| {
+                let (from, to) = ends_of(facing.triangles, side);
+                let triangle = side as usize / 3;
+                let forwards = (from < to) != self.differs[triangle];
+                (self.part_of[triangle], if forwards { 1_i64 } else { -1 })
+            }));
+            sides.sort_unstable();
+            for of_part in sides.chunk_by(|a, b| a.0 == b.0) {
+                if of_part.iter().map(|(_, sign)| sign).sum::<i64>() != 0 {
+                    self.parts[of_part[0].0 as usize].is_open = true;
+                }
+            }
+        }
+    }
+
+    /// Whether each triangle is to be turned over.
+    fn turned_triangles(&self, facing: &Facing<'_>) -> Vec<bool> {
+        let inwards = self.inward_parts(facing);
+        let of_part = |(part, inwards): (&Part, bool)| {
+            let area = part.area[0] + part.area[1];
+            let has_normals = part.agreement.abs() >= MIN_AGREEMENT * area;
+            match part.written_volume() {
+                Some(_) => part.differs() != inwards,
+                None if has_normals => part.agreement < 0.0,
+                None => part.differs(),
+            }
         };
-        for every in [1, 2, 3, 7] {
-            let (now, notes) = oriented(turned(every), &ball.positions);
-            assert_eq!(now, right);
-            assert_eq!(notes.len(), 1, "{notes:?}");
-        }
+        let flips: Vec<bool> = self.parts.iter().zip(inwards).map(of_part).collect();
+        let turns = |(&part, &differs): (&u32, &bool)| {
+            !self.parts[part as usize].is_one_sided && differs != flips[part as usize]
+        };
+        self.part_of.iter().zip(&self.differs).map(turns).collect()
     }
 
-    #[test]
-    fn the_wall_of_a_hollow_stays_and_open_parts_go_with_most() {
-        let (outer, inner) = (procedural::sphere(2.0, 1), procedural::sphere(1.0, 1));
-        let first = outer.positions.len() as u32;
-        let inwards = inner.triangles.iter().map(|[a, b, c]| [a + first, c + first, b + first]);
-        let triangles: Vec<_> = outer.triangles.iter().copied().chain(inwards).collect();
-        let positions = [outer.positions, inner.positions].concat();
-        assert_eq!(oriented(triangles.clone(), &positions), (triangles, vec![]));
-        let square = [Vec3::ZERO, Vec3::X, Vec3::ONE, Vec3::Y, Vec3::NEG_X];
-        let (now, _) = oriented(vec![[0, 1, 2], [0, 3, 2], [0, 3, 4]], &square);
-        assert_eq!(now, [[0, 1, 2], [0, 2, 3], [0, 3, 4]]);
+    /// Which closed parts are to be turned from what most of their area says, with those inside them.
+    fn inward_parts(&self, facing: &Facing<'_>) -> Vec<bool> {
+        let is_inward =
+            |part: &Part| !part.is_one_sided && part.written_volume().is_some_and(|volume| volume < 0.0);
+        let inward: Vec<bool> = self.parts.iter().map(is_inward).collect();
+        if !inward.contains(&true) {
+            return inward;
+        }
+        let mut shells = inside::Shells::new(facing.positions, facing.triangles);
+        for (index, part) in self.parts.iter().enumerate() {
+            if part.written_volume().is_some() && !part.is_one_sided {
+                shells.add(index, part.bounds, inward[index]);
+            }
+        }
+        shells.fill(&self.part_of, &self.differs);
+        let outermost = shells.outermost();
+        (0..self.parts.len()).map(|part| inward[outermost.get(&part).copied().unwrap_or(part)]).collect()
     }
 
-    #[test]
-    fn a_strip_with_one_side_stays_as_it_is() {
-        let ring: Vec<Vec3> = (0..10)
-            .map(|index| {
-                let angle = std::f32::consts::TAU * (index / 2) as f32 / 5.0;
-                let across = (angle / 2.0).sin_cos();
-                let side = if index % 2 == 0 { 0.3 } else { -0.3 };
-                let reach = 1.0 + side * across.1;
-                Vec3::new(reach * angle.cos(), reach * angle.sin(), side * across.0)
-            })
-            .collect();
-        let mut triangles = Vec::new();
-        for step in 0..5_u32 {
-            // The last meets the first with its sides exchanged.
-            let (a, b) = (2 * step, 2 * step + 1);
-            let (c, d) = if step == 4 { (1, 0) } else { (a + 2, a + 3) };
-            triangles.extend([[a, c, b], [b, c, d]]);
+    /// Whether the normals of each triangle are to be turned, given which triangles are.
+    fn turned_normals(&self, facing: &Facing<'_>, turned: &[bool]) -> Vec<bool> {
+        // By part, and whether the triangle was turned: the area, and that with which the normals agree.
+        let mut sums = vec![[(0.0, 0.0); 2]; self.parts.len()];
+        let agreements: Vec<Option<f64>> = (0..turned.len()).map(facing.agreement).collect();
+        for (triangle, agreement) in agreements.iter().enumerate() {
+            let Some(agreement) = agreement else { continue };
+            let [a, b, c] = facing.corners(triangle);
+            let area = (b - a).cross(c - a).length();
+            let sum = &mut sums[self.part_of[triangle] as usize][usize::from(turned[triangle])];
+            sum.0 += area;
+            sum.1 += if turned[triangle] { -area * agreement } else { area * agreement };
         }
-        let (now, notes) = oriented(triangles.clone(), &ring);
-        assert_eq!(now, triangles);
-        assert!(notes[0].contains("one side only"), "{notes:?}");
+        let points_back = |triangle: usize| {
+            let part = self.part_of[triangle] as usize;
+            let (area, agreement) = sums[part][usize::from(turned[triangle])];
+            let part = &self.parts[part];
+            // Of a part with a border they are only known to be backwards if all of them say which way that is.
+            let is_known = part.written_volume().is_some() || !part.agreement.is_nan();
+            let is_told = is_known && !part.is_one_sided && agreements[triangle].is_some();
+            is_told && agreement < -MIN_AGREEMENT * area
+        };
+        (0..turned.len()).map(points_back).collect()
     }
 }

@@ -118,3 +118,19 @@ fn a_finer_mesh_keeps_colours_coordinates_and_parts() {
         }
     }
 }
+
+#[test]
+fn statistics_measure_what_closed_parts_enclose() {
+    let ball = procedural::sphere(2.0, 5).statistics();
+    let expected = 4.0 / 3.0 * std::f64::consts::PI * 8.0;
+    assert_eq!((ball.components, ball.closed_components), (1, 1));
+    assert!((ball.volume.unwrap() / expected - 1.0).abs() < 0.002, "{ball:?}");
+    // The mean chord of a ball is 4/3 of its radius.
+    assert!((ball.thickness.unwrap() - 8.0 / 3.0).abs() < 0.005, "{ball:?}");
+    let slab = procedural::cuboid(Vec3::new(10.0, 10.0, 0.5)).statistics();
+    assert!(
+        (slab.volume.unwrap() - 50.0).abs() < 1e-9 && (slab.thickness.unwrap() - 200.0 / 220.0).abs() < 1e-9
+    );
+    let room = procedural::cornell_box().statistics();
+    assert_eq!((room.closed_components, room.volume, room.thickness), (0, None, None));
+}

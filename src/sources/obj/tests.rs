@@ -2,8 +2,11 @@
 
 use std::fs;
 
+use glam::{DVec3, Vec3};
+
 use super::*;
 use crate::sources::mesh::Normals;
+use crate::sources::mesh::triangulate::Cutter;
 
 const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
     f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
@@ -24,7 +27,7 @@ fn message(bytes: impl AsRef<[u8]>) -> String {
 /// How many triangles a polygon gives, and their area over that of the polygon.
 fn cut(corners: &[Vec3]) -> (usize, f64) {
     let mut triangles = Vec::new();
-    triangulate::triangulate(corners, &mut triangles);
+    Cutter::default().cut(corners, &mut triangles);
     let corner = |index: usize| corners[index].as_dvec3();
     let areas =
         triangles.iter().map(|&[a, b, c]| (corner(b) - corner(a)).cross(corner(c) - corner(a)).length());
@@ -241,16 +244,55 @@ fn strange_polygons_end() {
     assert_eq!(cut(&star).0, 5);
     let twice: Vec<_> = [Vec3::ZERO, Vec3::X, Vec3::ONE, Vec3::Y].repeat(2);
     assert_eq!(cut(&twice).0, 2);
-    let comb: Vec<_> = (0..scan::MAX_FACE_CORNERS)
-        .map(|step| Vec3::new(step as f32, (step % 2 * 100) as f32, 0.0))
-        .collect();
-    assert_eq!(cut(&comb).0, scan::MAX_FACE_CORNERS - 2);
+    // Its last edge crosses all others.
+    for count in [200, 2000, 20_000] {
+        let at = |step: usize| Vec3::new(step as f32, (step % 2 * 100) as f32, 0.0);
+        let comb: Vec<_> = (0..count).map(at).collect();
+        assert_eq!(cut(&comb).0, count - 2);
+    }
+}
+
+#[test]
+fn faces_of_very_many_corners_are_cut_at_once() {
+    let count = 1_000_000;
+    let circle = (0..count).map(|step| step as f64 / count as f64 * std::f64::consts::TAU);
+    let circle: Vec<_> = circle.map(|angle| Vec3::new(angle.cos() as f32, 1.0, angle.sin() as f32)).collect();
+    let comb = (0..count - 2).map(|step| Vec3::new((count - step) as f32, (1 + step % 2 * 100) as f32, 0.0));
+    let comb = comb.chain([Vec3::ZERO, Vec3::X * count as f32]).collect();
+    // Corners on straight edges stay corners.
+    let side = |from: Vec3, to: Vec3| (0..count / 4).map(move |step| from.lerp(to, step as f32 / 250_000.0));
+    let [a, b, c, d] =
+        [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y].map(|corner| corner * 250_000.0);
+    let square = side(a, b).chain(side(b, c)).chain(side(c, d)).chain(side(d, a)).collect();
+    for polygon in [circle, comb, square] {
+        let start = std::time::Instant::now();
+        let (triangles, area) = cut(&polygon);
+        assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+        assert!(triangles >= count - 2 - 100 && (area - 1.0).abs() < 1e-3, "{triangles}: {area}");
+    }
+}
+
+#[test]
+fn a_face_of_very_many_corners_may_have_a_hole() {
+    // A ring: its outer edge, a bridge, its inner edge the other way round, the bridge back.
+    for count in [100, 1000] {
+        let at = |radius: f64, step: usize| {
+            let angle = step as f64 / count as f64 * std::f64::consts::TAU;
+            Vec3::new((radius * angle.cos()) as f32, (radius * angle.sin()) as f32, 0.0)
+        };
+        let ring: Vec<_> = (0..=count).map(|step| at(2.0, step % count)).collect();
+        let hole = (0..=count).rev().map(|step| at(1.0, step % count));
+        let polygon: Vec<_> = ring.into_iter().chain(hole).collect();
+        let (triangles, area) = cut(&polygon);
+        assert_eq!(triangles, polygon.len() - 2);
+        assert!((area - 1.0).abs() < 1e-3, "{count}: {area}");
+    }
 }
 
 #[test]
 fn a_face_of_too_many_corners_is_refused() {
-    let text = message(format!("{CUBE}f {}\n", "1 2 3 ".repeat(6000)));
-    assert!(text.starts_with("a.obj:15: a face of more than 16384 corners; triangulate it"), "{text}");
+    let text = message(format!("{CUBE}f {}\n", "1 2 3 ".repeat(1_400_000)));
+    assert!(text.starts_with("a.obj:15: a face of more than 4194304 corners; triangulate it"), "{text}");
 }
 
 #[test]

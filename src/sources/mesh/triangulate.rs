@@ -2,19 +2,53 @@
 //!
 //! Meisters, "Polygons have ears", 1975: any simple polygon of more than three corners has a corner whose triangle lies
 //! inside; cutting it off leaves a simple polygon. Convex polygons come out as the fan around their first corner.
+//!
+//! That takes up to the square of the number of corners, so polygons of very many are swept over: see [`super::outline`].
 
+use super::outline;
 use glam::{DVec2, DVec3, Vec3};
 
-/// The triangles of a polygon, as indices into its corners, in the polygon's direction of rotation.
-///
-/// A polygon that cannot be cut cleanly, because it crosses itself, still gives two triangles fewer than it has corners. Takes
-/// up to the square of the number of corners.
-pub(super) fn triangulate(corners: &[Vec3], triangles: &mut Vec<[usize; 3]>) {
-    let count = unwound_length(corners);
-    match count {
-        0..=2 => {}
-        3 => triangles.push([0, 1, 2]),
-        _ => Clipper::new(&corners[..count]).clip(triangles),
+/// Corners of a polygon whose ears are clipped at once.
+const MOST_CLIPPED: usize = 256;
+
+/// Squares of numbers of corners of larger polygons whose ears are clipped, all in all: a second's work.
+const MOST_WORK: usize = 1 << 26;
+
+/// Cuts up the polygons of a mesh.
+#[derive(Debug, Default)]
+pub(in crate::sources) struct Cutter {
+    work: usize,
+}
+
+impl Cutter {
+    /// The triangles of a polygon, as indices into its corners, in the polygon's direction of rotation: two fewer than it has corners, also
+    /// if it cannot be cut cleanly because it crosses itself.
+    ///
+    /// False if it has very many corners and crosses or touches itself, and too much was done for such ones already: then they are the fan
+    /// around its first corner.
+    pub fn cut(&mut self, corners: &[Vec3], triangles: &mut Vec<[usize; 3]>) -> bool {
+        let count = unwound_length(corners);
+        match count {
+            0..=2 => return true,
+            3 => {
+                triangles.push([0, 1, 2]);
+                return true;
+            }
+            _ => {}
+        }
+        let outline = project(&corners[..count]);
+        if count > MOST_CLIPPED {
+            if outline::triangulate(&outline, triangles).is_some() {
+                return true;
+            }
+            self.work = self.work.saturating_add(count.saturating_mul(count));
+            if self.work > MOST_WORK {
+                triangles.extend((1..count - 1).map(|corner| [0, corner, corner + 1]));
+                return false;
+            }
+        }
+        Clipper::new(outline).clip(triangles);
+        true
     }
 }
 
@@ -50,10 +84,11 @@ struct Clipper {
 }
 
 impl Clipper {
-    fn new(corners: &[Vec3]) -> Self {
-        let count = corners.len();
+    /// Begins with a polygon that is counter-clockwise.
+    fn new(points: Vec<DVec2>) -> Self {
+        let count = points.len();
         let mut clipper = Self {
-            points: project(corners),
+            points,
             previous: (0..count).map(|corner| (corner + count - 1) % count).collect(),
             next: (0..count).map(|corner| (corner + 1) % count).collect(),
             is_ear: Vec::new(),

@@ -1,5 +1,6 @@
-//! OBJ text cut into statements, and at which line each begins.
+//! Text of OBJ, MTL and STL files cut into statements, and at which line each begins.
 
+use std::borrow::Cow;
 use std::io::{self, BufRead};
 
 /// Reads one statement after the other: a line or, if it is geometry that ends in `\`, those it continues on.
@@ -7,6 +8,8 @@ use std::io::{self, BufRead};
 /// Other lines are not continued: the name of a folder or group may end in `\`.
 pub(super) struct Statements<R> {
     input: R,
+    /// The statement last read.
+    bytes: Vec<u8>,
     /// A `\n` that comes next belongs to the `\r` before it.
     skip_line_feed: bool,
     lines_read: u64,
@@ -18,29 +21,34 @@ pub(super) struct Statements<R> {
 
 impl<R: BufRead> Statements<R> {
     pub fn new(input: R) -> Self {
-        Self { input, skip_line_feed: false, lines_read: 0, line: 0, is_terminated: true }
+        Self { input, bytes: Vec::new(), skip_line_feed: false, lines_read: 0, line: 0, is_terminated: true }
     }
 
-    /// The next statement, with U+FFFD for what is not UTF-8; `None` at the end of the file.
-    pub fn next(&mut self) -> io::Result<Option<String>> {
-        let mut bytes = Vec::new();
-        if !self.read_line(&mut bytes)? {
-            return Ok(None);
+    /// Reads the next statement. False at the end of the file.
+    pub fn advance(&mut self) -> io::Result<bool> {
+        self.bytes.clear();
+        if !self.read_line()? {
+            return Ok(false);
         }
         self.line = self.lines_read;
-        let is_geometry = matches!(bytes.trim_ascii_start().first(), Some(b'v' | b'f' | b'l' | b'p'));
-        while is_geometry && bytes.trim_ascii_end().last() == Some(&b'\\') {
-            bytes.truncate(bytes.trim_ascii_end().len() - 1);
-            bytes.push(b' ');
-            if !self.read_line(&mut bytes)? {
+        let is_geometry = matches!(self.bytes.trim_ascii_start().first(), Some(b'v' | b'f' | b'l' | b'p'));
+        while is_geometry && self.bytes.trim_ascii_end().last() == Some(&b'\\') {
+            self.bytes.truncate(self.bytes.trim_ascii_end().len() - 1);
+            self.bytes.push(b' ');
+            if !self.read_line()? {
                 break;
             }
         }
-        Ok(Some(String::from_utf8_lossy(&bytes).into_owned()))
+        Ok(true)
+    }
+
+    /// The statement last read, with U+FFFD for what is not UTF-8.
+    pub fn text(&self) -> Cow<'_, str> {
+        String::from_utf8_lossy(&self.bytes)
     }
 
     /// Appends a line without its end, which is `\n`, `\r\n` or `\r`. False at the end of the file.
-    fn read_line(&mut self, line: &mut Vec<u8>) -> io::Result<bool> {
+    fn read_line(&mut self) -> io::Result<bool> {
         let mut is_any = false;
         self.is_terminated = false;
         loop {
@@ -59,7 +67,7 @@ impl<R: BufRead> Statements<R> {
             }
             let end = available.iter().position(|&byte| byte == b'\n' || byte == b'\r');
             let taken = end.unwrap_or(available.len());
-            line.extend_from_slice(&available[..taken]);
+            self.bytes.extend_from_slice(&available[..taken]);
             is_any |= taken > 0;
             if let Some(end) = end {
                 self.skip_line_feed = available[end] == b'\r';
