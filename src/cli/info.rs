@@ -62,6 +62,9 @@ fn describe(contents: &Contents, for_machines: bool) -> Value {
             "open edges": mesh.open_edges,
             "non-manifold edges": mesh.non_manifold_edges,
             "components": mesh.components,
+            "closed components": mesh.closed_components,
+            "volume": mesh.volume,
+            "mean thickness": mesh.thickness,
             "bounds": mesh.bounds.map(|(low, high)| [low.to_array(), high.to_array()]),
         }),
         Contents::Volume { size, format, spacing, range, non_finite, histogram } => json!({

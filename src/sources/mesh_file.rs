@@ -188,4 +188,6 @@ fn unknown(path: &Path) -> SourceError {
 }
 
 #[cfg(test)]
+mod reported;
+#[cfg(test)]
 mod tests;
