@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper that cannot do its work fails the test")]
 
+use bevy_ecs::reflect::AppTypeRegistry;
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use std::fmt::Write;
 use std::fs;

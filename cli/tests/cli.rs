@@ -135,7 +135,7 @@ fn a_scene_at_fault_is_told_from_a_command_line_at_fault() {
     place.run(1, &["render", "scene.ron"]).says("did you mean `Sphere`?");
     place.run(1, &["info", "scene.ron"]).says("did you mean `Sphere`?");
     place.run(1, &["check", "scen.ron"]).says("did you mean `scene.ron`?");
-    place.run(1, &["check", "."]).says("is a folder");
+    place.run(1, &["check", "."]).says("a folder without DICOM slices");
     place.write("fine.ron", BALL);
     place
         .run(1, &["check", "fine.ron", "scene.ron"])

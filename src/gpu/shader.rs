@@ -3,6 +3,7 @@
 //! They are built into the program. With `TYNDALL_SHADERS` set to a folder, a file of the same path in it is used instead.
 
 use super::{Gpu, GpuError};
+use crate::plain;
 use crate::regular_file::{self, Unopened};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -214,5 +215,6 @@ pub(super) fn compile(gpu: &Gpu, name: &str, expanded: &Expanded) -> Result<wgpu
         Some(format!("{place}:{}", location.line_position))
     });
     let file = place.map_or(format!("{name}.wgsl"), |place| format!("{name}.wgsl ({place})"));
-    Err(GpuError::Shader(file, error.to_string()))
+    // Lines of shaders may be of any length.
+    Err(GpuError::Shader(file, plain::message(&error.to_string())))
 }

@@ -196,6 +196,8 @@ pub(super) fn relative_to(file: &Path, folder: &Path) -> String {
         }
         _ => file.to_owned(),
     };
+    // The folder itself.
+    let relative = if relative.as_os_str().is_empty() { Path::new(".").to_owned() } else { relative };
     relative.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/")
 }
 
@@ -268,6 +270,7 @@ mod tests {
         }
         let beside = scene_of_files(&files[1..2], &at("b"), &Orientation::default()).unwrap();
         assert!(beside.contains("File(\"../a.obj\")"), "{beside}");
+        assert_eq!(relative_to(folder.path(), folder.path()), ".");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::names::nearest_file;
 use super::problem::{Place, Problem, SourceFile};
 use super::write::quoted;
 use crate::regular_file::{self, Unopened};
-use crate::sources::seems::{HEAD, Seems, read_here, seems};
+use crate::sources::seems::{HEAD, READ_HERE, Seems, seems};
 use crate::sources::{Searched, trail};
 use std::io;
 use std::path::Path;
@@ -24,7 +24,7 @@ pub(super) fn read_text(path: &Path, wanted: &str, is_seen: bool) -> Result<Arc<
         let what = seems(path, &bytes[..HEAD]).words();
         let message =
             format!("{} is {what} of more than {MAX_BYTES} bytes, too long for {wanted}", path.display());
-        return Err(Box::new(Problem::error(message).help(read_here())));
+        return Err(Box::new(Problem::error(message).help(READ_HERE)));
     }
     match String::from_utf8(bytes) {
         Ok(text) if is_seen => Ok(SourceFile::new(path, text)),
@@ -115,7 +115,7 @@ pub(super) fn no_text(path: &Path, wanted: &str, seems: Seems) -> Problem {
         _ if wanted != SCENE => problem,
         Seems::Mesh(_) => problem.help(format!("a scene with it: {}", scene_with("Mesh", &name))),
         Seems::Volume(_) => problem.help(format!("a scene with it: {}", scene_with("Volume", &name))),
-        _ => problem.help(read_here()),
+        _ => problem.help(READ_HERE),
     }
 }
 

@@ -21,8 +21,8 @@ pub enum Kind {
 }
 
 /// Endings of meshes and of volumes that are read: they count where the content says nothing, so that its reader says what is wrong.
-pub(super) const MESHES: [&str; 5] = ["obj", "ply", "stl", "gltf", "glb"];
-pub(super) const VOLUMES: [&str; 13] =
+const MESHES: [&str; 5] = ["obj", "ply", "stl", "gltf", "glb"];
+const VOLUMES: [&str; 13] =
     ["nrrd", "nhdr", "nii", "hdr", "mha", "mhd", "dcm", "ima", "vtk", "vti", "tif", "tiff", "npy"];
 
 /// What the file, or folder of DICOM slices, is; none for what is neither, cannot be opened or is not there.

@@ -1,16 +1,13 @@
 //! What a file seems to be, by its first bytes: for messages about files that are not what was asked for.
 
-use super::recognise::{MESHES, VOLUMES};
 use std::path::Path;
 
 /// Bytes of a file that tell what it seems to be.
 pub(crate) const HEAD: usize = 512;
 
 /// What is read here, for who gave something else.
-pub(crate) fn read_here() -> String {
-    let endings = |all: &[&str]| all.iter().map(|ending| format!(".{ending}")).collect::<Vec<_>>().join(" ");
-    format!("read here: scenes .ron; meshes {}; volumes {}", endings(&MESHES), endings(&VOLUMES))
-}
+pub(crate) const READ_HERE: &str =
+    "read here are scenes (.ron), meshes (.obj) and volumes (.nrrd, .nhdr, .nii, .mhd, .mha, .vtk, DICOM)";
 
 /// What a file seems to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
