@@ -15,7 +15,6 @@ use crate::whole_file::folder_of;
 use bevy_ecs::reflect::ReflectComponent;
 use bevy_reflect::{Reflect, TypeInfo, TypeRegistration, TypeRegistry, structs::Struct};
 use std::any::TypeId;
-use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -39,7 +38,8 @@ pub(super) fn load(
         fetched: HashMap::new(),
         included: HashSet::new(),
         chain: Vec::new(),
-        known: OnceCell::new(),
+        known: None,
+        suggested: HashMap::new(),
         told: HashSet::new(),
         broken: HashSet::new(),
     };
@@ -72,12 +72,17 @@ struct Loader<'a> {
     /// The files that include each other down to the one that is being read.
     chain: Vec<PathBuf>,
     /// The names of all components, once one was asked for that is none.
-    known: OnceCell<Vec<Known<'a>>>,
+    known: Option<Vec<Known<'a>>>,
+    /// What was said of names that are none of these.
+    suggested: HashMap<String, String>,
     /// What was reported of files that several entities share.
     told: HashSet<(Option<Place>, String)>,
     /// Files that hold no component of a type, which was reported.
     broken: HashSet<(PathBuf, TypeId)>,
 }
+
+/// Names of no component that it is looked into what may be meant by them.
+const MOST_SUGGESTED: usize = 1000;
 
 /// How deep files may include each other.
 const MOST_INCLUDES: usize = 64;
@@ -399,7 +404,21 @@ impl<'a> Loader<'a> {
         value
     }
 
-    fn component_type(&self, reader: &mut Reader, name: &Part) -> Option<&'a TypeRegistration> {
+    /// What may be meant by the name of no component. The same slip is often made many times, and looked into once.
+    fn suggested(&mut self, name: &str) -> String {
+        if let Some(known) = self.suggested.get(name) {
+            return known.clone();
+        }
+        let known = self.known.get_or_insert_with(|| Known::components(self.registry));
+        if self.suggested.len() >= MOST_SUGGESTED {
+            return suggestion("", known);
+        }
+        let suggestion = suggestion(name, known);
+        self.suggested.insert(name.to_owned(), suggestion.clone());
+        suggestion
+    }
+
+    fn component_type(&mut self, reader: &mut Reader, name: &Part) -> Option<&'a TypeRegistration> {
         let found = self.registry.get_with_short_type_path(name.text);
         if let Some(registration) =
             found.filter(|registration| registration.data::<ReflectComponent>().is_some())
@@ -411,7 +430,7 @@ impl<'a> Loader<'a> {
         } else {
             Problem::error(format!("there is no component `{}`", name.text))
                 .label("unknown component")
-                .help(suggestion(name.text, self.known.get_or_init(|| Known::components(self.registry))))
+                .help(self.suggested(name.text))
         };
         reader.report(name, problem);
         None

@@ -13,15 +13,33 @@ const LONGEST: usize = 256;
 
 /// The candidate nearest to `name`, if one is near enough to be meant.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    nearest_within(name, candidates, 1)
+}
+
+/// The same, where so many letters may differ, and one more of every three that the candidate has.
+fn nearest_within<'a>(
+    name: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+    letters: usize,
+) -> Option<&'a str> {
     if name.len() > LONGEST {
         return None;
     }
     let wanted = name.to_lowercase();
+    let length = wanted.chars().count();
     candidates
         .into_iter()
         .filter(|candidate| candidate.len() <= LONGEST)
-        .map(|candidate| (strsim::damerau_levenshtein(&wanted, &candidate.to_lowercase()), candidate))
-        .filter(|(distance, candidate)| *distance <= 1 + candidate.chars().count() / 3)
+        .filter_map(|candidate| {
+            let own = candidate.chars().count();
+            let most = letters + own / 3;
+            // As many letters differ at least as one has more than the other; comparing them takes its time.
+            if own.abs_diff(length) > most {
+                return None;
+            }
+            let distance = strsim::damerau_levenshtein(&wanted, &candidate.to_lowercase());
+            (distance <= most).then_some((distance, candidate))
+        })
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, candidate)| candidate)
 }
@@ -88,10 +106,10 @@ impl<'a> Known<'a> {
 
 /// `LookupTable`, `lookup_table` and `lookup table` are the same.
 fn is_same_word(a: &str, b: &str) -> bool {
-    let letters = |text: &str| -> Vec<char> {
-        text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
-    };
-    letters(a) == letters(b)
+    fn letters(text: &str) -> impl Iterator<Item = char> + '_ {
+        text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase)
+    }
+    letters(a).eq(letters(b))
 }
 
 /// Which of the candidates may be meant: the one that is spelt nearly so, else those that are also called so, or nearly so.
@@ -109,7 +127,8 @@ pub(crate) fn meant<'a>(name: &str, candidates: &[Known<'a>]) -> Vec<&'a str> {
     if let Some(near) = nearest(name, candidates.iter().map(|known| known.name)) {
         return vec![near];
     }
-    nearest(name, candidates.iter().flat_map(|known| known.also.iter().copied()))
+    // These are many, and short: less is a slip of the finger here.
+    nearest_within(name, candidates.iter().flat_map(|known| known.also.iter().copied()), 0)
         .map(called)
         .unwrap_or_default()
 }
@@ -155,6 +174,7 @@ mod tests {
         assert_eq!(meant("Bx", &known), ["Box"]);
         assert_eq!(meant("plane", &known), ["Plane"]);
         assert_eq!(meant("Torus", &known), [""; 0]);
+        assert_eq!(meant("Ohm", &[FILE]), [""; 0], "`Obj` is something else");
         assert_eq!(suggestion("Torus", &known), "known here: File, Box, Plane");
         let two = [Known { name: "Phong", also: &["Material"] }, Known { name: "Skin", also: &["Material"] }];
         assert_eq!(suggestion("material", &two), "did you mean `Phong` or `Skin`?");

@@ -6,8 +6,7 @@ use std::path::Path;
 pub(crate) const HEAD: usize = 512;
 
 /// What is read here, for who gave something else.
-pub(crate) const READ_HERE: &str =
-    "read here are scenes (.ron), meshes (.obj) and volumes (.nrrd, .nhdr, .nii, .mhd, .mha, .vtk, DICOM)";
+pub(crate) const READ_HERE: &str = "read here are scenes (.ron), meshes (.obj, .ply, .stl, .gltf, .glb), volumes (.nrrd, .nii, .mhd, .vtk, DICOM)";
 
 /// What a file seems to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
