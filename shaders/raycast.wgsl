@@ -457,5 +457,6 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
             break;
         }
     }
-    return vec4f(radiance + transmittance * behind.rgb, samples);
+    let hidden = 1.0 - select(0.0, transmittance, behind.a >= FAR);
+    return vec4f(radiance + transmittance * behind.rgb, select(samples, hidden, frame.cut_out == 1u));
 }

@@ -101,4 +101,6 @@ pub use passes::light_budget::LightBudget;
 pub use passes::light_gbuffer::LightTexels;
 pub use passes::scattered_radiosity::Refinement;
 pub use passes::scattering_gbuffer::AutomaticCamera;
-pub use view::{Coarseness, Comparison, Drawing, FreeCamera, Picture, SceneBounds, Split, View, Viewpoint};
+pub use view::{
+    Coarseness, Comparison, CutOut, Drawing, FreeCamera, Picture, SceneBounds, Split, View, Viewpoint,
+};

@@ -1,12 +1,13 @@
 //! A loaded scene becomes a picture in memory.
 
+use crate::components::Auto;
 use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, PassTimer, read_texture};
 use crate::passes::{products, raycast::RayCaster, surface::Surface, tonemap::Tonemap};
 use crate::plain::piece;
 use crate::report::Report;
 use crate::scene::{self, EntityProblems, Override, Problem, Problems, SceneDocument, Severity};
-use crate::view::Picture;
+use crate::view::{CutOut, FAR, Picture};
 use bevy_app::App;
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::AppTypeRegistry;
@@ -23,14 +24,18 @@ pub struct Image {
     pub height: u32,
     /// Red, green and blue of each pixel.
     pub pixels: Pixels,
+    /// How much of the background each pixel hides, from 0 to 1, where [`CutOut`] has it left out.
+    pub coverage: Option<Vec<f32>>,
+    /// How encoded pixels are: by the curve of sRGB, or by an exponent.
+    pub gamma: Auto<f32>,
 }
 
 /// The pixels of an [`Image`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Pixels {
-    /// Scene-referred linear radiance.
+    /// Scene-referred linear radiance; without the background as much as there is of it in the pixel (premultiplied).
     Radiance(Vec<[f32; 3]>),
-    /// Exposed and gamma-encoded.
+    /// Exposed and encoded; without the background the colour of what is there, however little of the pixel it hides (straight).
     Encoded(Vec<[u8; 3]>),
 }
 
@@ -181,15 +186,26 @@ pub(crate) fn read_image(world: &World, encoded: bool) -> Result<Image, GpuError
     let gpu = world.resource::<Gpu>();
     let picture = world.resource::<Picture>();
     let (width, height) = (picture.size.x, picture.size.y);
-    let pixels = match &world.resource::<Tonemap>().encoded {
+    let is_cut_out = world.resource::<CutOut>().0;
+    let tonemap = world.resource::<Tonemap>();
+    let (pixels, coverage): (_, Vec<f32>) = match &tonemap.encoded {
         Some(target) if encoded => {
             let bytes = read_texture(gpu, &target.texture)?;
             let (texels, _) = bytes.as_chunks::<4>();
-            Pixels::Encoded(texels.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect())
+            let pixels = texels.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect();
+            (Pixels::Encoded(pixels), texels.iter().map(|texel| f32::from(texel[3]) / 255.0).collect())
         }
-        _ => Pixels::Radiance(read_radiance(world)?.into_iter().map(|[r, g, b, _]| [r, g, b]).collect()),
+        _ => {
+            let texels = read_radiance(world)?;
+            let pixels = texels.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect();
+            let coverage = match world.resource::<RayCaster>().radiance() {
+                Some(_) => texels.iter().map(|texel| texel[3]).collect(),
+                None => texels.iter().map(|texel| if texel[3] < FAR { 1.0 } else { 0.0 }).collect(),
+            };
+            (Pixels::Radiance(pixels), coverage)
+        }
     };
-    Ok(Image { width, height, pixels })
+    Ok(Image { width, height, pixels, coverage: is_cut_out.then_some(coverage), gamma: tonemap.gamma })
 }
 
 /// The texels of the last pass that drew radiance.
@@ -206,8 +222,11 @@ fn measure(world: &mut World) -> Result<(), GpuError> {
         return Ok(());
     }
     let samples = match world.resource::<RayCaster>().radiance() {
-        Some(_) => read_radiance(world)?.iter().map(|texel| f64::from(texel[3])).sum::<f64>() as u64,
-        None => 0,
+        // Else the texels say something else.
+        Some(_) if !world.resource::<CutOut>().0 => {
+            read_radiance(world)?.iter().map(|texel| f64::from(texel[3])).sum::<f64>() as u64
+        }
+        _ => 0,
     };
     let times = world.resource_scope(|world, gpu: Mut<Gpu>| match world.get_resource_mut::<PassTimer>() {
         Some(mut timer) => timer.collect(&gpu),

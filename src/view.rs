@@ -5,12 +5,12 @@ mod covered;
 mod framing;
 mod unseen;
 
-pub use asked::{Coarseness, Comparison, Drawing, FreeCamera, Picture, Split, Viewpoint};
+pub use asked::{Coarseness, Comparison, CutOut, Drawing, FreeCamera, Picture, Split, Viewpoint};
 pub(crate) use asked::{Part, in_parts, is_wanted};
 pub(crate) use covered::{Pixels, covered};
 
 use crate::Stage;
-use crate::components::{DirectionalLight, Motion, Placement, Projection, SceneSettings, ViewCamera};
+use crate::components::{Auto, DirectionalLight, Motion, Placement, Projection, SceneSettings, ViewCamera};
 use crate::gpu::{Gpu, uniform_array, uniform_buffer};
 use crate::loading::{LoadedMesh, LoadedVolume, corners, placed_corners};
 use crate::mirrors::mirror;
@@ -19,7 +19,7 @@ use crate::scene::{Problem, Problems};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
 use glam::dcamera::rh::view::look_at_affine3;
-use glam::{DAffine3, DMat4, DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
+use glam::{DAffine3, DMat4, DVec3, Mat4, UVec2, Vec2, Vec3};
 
 /// Derives the [`View`] and what shaders read of it.
 pub(crate) struct ViewPlugin;
@@ -32,6 +32,7 @@ impl Plugin for ViewPlugin {
             .init_resource::<SceneBounds>()
             .init_resource::<Coarseness>()
             .init_resource::<Comparison>()
+            .init_resource::<CutOut>()
             .init_resource::<Drawing>()
             .add_systems(
                 Update,
@@ -56,8 +57,8 @@ pub struct View {
     pub projection: Projection,
     /// Exposure value.
     pub exposure: f32,
-    /// Encoding exponent.
-    pub gamma: f32,
+    /// Encoding exponent, or the curve of sRGB.
+    pub gamma: Auto<f32>,
     /// How far the camera is from what it looks at, scene units: the unit of eye space.
     pub reach: f64,
     /// How far away the farthest corner of anything is, in eye space.
@@ -73,7 +74,7 @@ impl Default for View {
 
 impl View {
     /// The view from a place.
-    pub(crate) fn from_viewpoint(viewpoint: Viewpoint, exposure: f32, gamma: f32) -> Self {
+    pub(crate) fn from_viewpoint(viewpoint: Viewpoint, exposure: f32, gamma: Auto<f32>) -> Self {
         let Viewpoint { eye, target, up, projection } = viewpoint;
         let reach = eye.distance(target);
         Self {
@@ -122,9 +123,9 @@ mirror! {
         clip_from_eye: Mat4,
         half_extent: Vec2,
         picture: Vec2,
-        background: Vec3,
         perspective: u32,
         light_count: u32,
+        cut_out: u32,
     }
 }
 
@@ -259,8 +260,7 @@ fn upload_frame(
     mut commands: Commands,
     gpu: Res<Gpu>,
     view: Res<View>,
-    picture: Res<Picture>,
-    settings: Res<SceneSettings>,
+    (picture, cut_out): (Res<Picture>, Res<CutOut>),
     lights: Query<(Entity, &DirectionalLight, Option<&Motion>)>,
     mut problems: ResMut<Problems>,
 ) {
@@ -278,9 +278,9 @@ fn upload_frame(
         clip_from_eye: view.clip_from_eye(half_extent),
         half_extent,
         picture: picture.size.as_vec2(),
-        background: settings.background,
         perspective: u32::from(matches!(view.projection, Projection::Perspective { .. })),
         light_count: light_uniforms.len() as u32,
+        cut_out: u32::from(cut_out.0),
     };
     commands.insert_resource(FrameBuffers {
         frame: uniform_buffer(&gpu, "frame", &frame),
@@ -326,7 +326,10 @@ pub(crate) fn normal_matrix(affine: DAffine3) -> DMat4 {
     DMat4::from_mat3(normals * if largest > 0.0 { largest.recip() } else { 1.0 })
 }
 
-/// The picture's background as a texel of the surface target: at the end of every ray.
-pub(crate) fn far_background(settings: &SceneSettings) -> Vec4 {
-    settings.background.extend(3.0e38)
+/// What is seen where nothing is: the scene's background, and nothing at all in pictures that leave it out.
+pub(crate) fn background(settings: &SceneSettings, cut_out: &CutOut) -> Vec3 {
+    if cut_out.0 { Vec3::ZERO } else { settings.background }
 }
+
+/// Distance along a ray that meets nothing: `FAR` of `shaders/shared/frame.wgsl`.
+pub(crate) const FAR: f32 = 3.0e38;

@@ -18,14 +18,24 @@ pub(crate) struct Staged {
 impl Staged {
     /// Writes beside the file at `path`, which keeps its permissions. Through a link, what it leads to is meant, be it there or not.
     pub fn write(path: &Path, bytes: &[u8]) -> io::Result<Self> {
+        let mut staged = Self::begin(path)?;
+        staged.write_all(bytes)?;
+        staged.finish()
+    }
+
+    /// An empty one, to be written to.
+    pub fn begin(path: &Path) -> io::Result<Self> {
         let path = target(path)?;
-        let replaced = replaced(&path)?;
-        let mut file = Temporary::new(&folder_of(&path))?;
-        file.file().write_all(bytes)?;
-        if let Some(replaced) = replaced {
-            file.file().set_permissions(replaced.permissions())?;
+        replaced(&path)?;
+        Ok(Self { file: Temporary::new(&folder_of(&path))?, path })
+    }
+
+    /// The same once all has been written.
+    pub fn finish(mut self) -> io::Result<Self> {
+        if let Some(replaced) = replaced(&self.path)? {
+            self.file.file().set_permissions(replaced.permissions())?;
         }
-        Ok(Self { file, path })
+        Ok(self)
     }
 
     /// The same once it is on the disk, so that a loss of power leaves the old file or the new one.
@@ -37,6 +47,16 @@ impl Staged {
     /// Puts it in its place: whoever reads the file finds the old or the new one, never half of it.
     pub fn commit(self) -> io::Result<()> {
         self.file.named(&self.path)?.map_or(Ok(()), |named| named.rename(&self.path))
+    }
+}
+
+impl Write for Staged {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.file().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.file().flush()
     }
 }
 

@@ -143,7 +143,7 @@ fn every_field_of_every_component_can_be_written() {
         frame: None,
         projection: Projection::Orthographic { height: 3.0 },
         exposure: -1.5,
-        gamma: 1.0,
+        gamma: Auto::Value(1.0),
     };
     assert_eq!(get::<ViewCamera>(&app, "eye"), camera);
     let turntable = Turntable { degrees_per_second: -9.0, axis: Vec3::X };

@@ -4,6 +4,8 @@
 
 #[path = "cli/help.rs"]
 mod help;
+#[path = "cli/pictures.rs"]
+mod pictures;
 
 use serde_json::Value;
 use std::fs;

@@ -1,4 +1,4 @@
-// The camera, the lights and the background of a frame. Eye space: the camera at the origin, x right, y up, looking along -z, and what
+// The camera and the lights of a frame. Eye space: the camera at the origin, x right, y up, looking along -z, and what
 // it looks at one unit away, so that numbers stay about 1 whatever the scale of the scene is.
 
 struct Frame {
@@ -7,9 +7,10 @@ struct Frame {
     // Half the width and height of the picture: tangents for a perspective camera, eye space for an orthographic one.
     half_extent: vec2f,
     picture: vec2f,
-    background: vec3f,
     perspective: u32,
     light_count: u32,
+    // Whether pictures tell how much of the background they hide.
+    cut_out: u32,
 }
 
 struct Light {

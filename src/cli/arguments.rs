@@ -1,6 +1,7 @@
 //! What can be typed.
 
 use super::open::Directions;
+use crate::picture_file::Format;
 use crate::scene::Override;
 use clap::{Args, Parser, Subcommand};
 use glam::UVec2;
@@ -19,7 +20,7 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// Show a scene, meshes or volumes in a window, and read them again whenever their files change
     View(ViewArguments),
-    /// Draw a scene, meshes or volumes into a PNG (exposed and gamma-encoded) or EXR (linear radiance) file
+    /// Draw a scene, meshes or volumes into a PNG or EXR file, or frames into files or for a video encoder
     Render(RenderArguments),
     /// Find every problem of scenes: syntax, names, values, files
     Check(CheckArguments),
@@ -65,16 +66,22 @@ pub(super) struct RenderArguments {
     pub files: Vec<PathBuf>,
     #[command(flatten)]
     pub directions: Directions,
-    /// The picture to write: its ending, .png or .exr, says which kind
-    #[arg(short, long, default_value = "out.png", value_parser = picture_path)]
+    /// The picture to write, or - for standard output; without --format its ending says which kind: .png, .exr, .y4m, .rgb
+    #[arg(short, long, default_value = "out.png")]
     pub output: PathBuf,
+    /// What to write; on standard output PNG where nothing is said
+    #[arg(long, value_enum)]
+    pub format: Option<Format>,
+    /// Leave the background out: alpha says how much of it each pixel hides
+    #[arg(long)]
+    pub transparent: bool,
     /// Pixels across and down
     #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = size)]
     pub size: UVec2,
     /// The ViewCamera to draw with, by its entity's name; else the first by name
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
-    /// Draw frames A to B-1 of the scene's animation, as out_0000.png and so on
+    /// Draw frames A to B-1 of the scene's animation, as out_0000.png and so on; one behind the other where the output can hold them all
     #[arg(long, value_name = "A..B", value_parser = frames)]
     pub frames: Option<Range<u64>>,
     /// Frames a second of the animation
@@ -154,12 +161,4 @@ fn frames(text: &str) -> Result<Range<u64>, String> {
 fn rate(text: &str) -> Result<f64, String> {
     let parsed = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
     parsed.ok_or_else(|| "expected a number above 0".into())
-}
-
-fn picture_path(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    match path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase).as_deref() {
-        Some("png" | "exr") => Ok(path),
-        _ => Err("a picture is written as .png or .exr".into()),
-    }
 }

@@ -5,13 +5,14 @@ mod markdown;
 
 use super::arguments::{Arguments, HelpArguments};
 use super::exit::Failure;
+use super::terminal;
 use crate::scene::{Known, meant};
 use bevy_app::App;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
 use bevy_reflect::{TypeInfo, TypeRegistration, TypeRegistry};
 use clap::CommandFactory;
 use fields::Listing;
-use std::io::{ErrorKind, IsTerminal, Write};
+use std::io::IsTerminal;
 
 /// Columns where the output is not a terminal, and at most.
 const WIDTH: usize = 100;
@@ -20,17 +21,17 @@ pub(super) fn run(app: &App, arguments: &HelpArguments) -> Result<(), Failure> {
     let mut command = Arguments::command();
     command.build();
     let Some(topic) = arguments.topic.as_deref() else {
-        return print(&command.render_long_help().to_string());
+        return terminal::data(&command.render_long_help().to_string());
     };
     if let Some(command) = command.find_subcommand_mut(topic) {
-        return print(&command.render_long_help().to_string());
+        return terminal::data(&command.render_long_help().to_string());
     }
     let registry = app.world().resource::<AppTypeRegistry>().read();
     if topic.eq_ignore_ascii_case("components") {
-        return print(&list(&registry, width()));
+        return terminal::data(&list(&registry, width()));
     }
     match find(&registry, topic) {
-        Some(registration) => print(&page(&registry, registration, width())),
+        Some(registration) => terminal::data(&page(&registry, registration, width())),
         None => Err(unknown(&registry, &command, topic)),
     }
 }
@@ -104,13 +105,4 @@ fn unknown(registry: &TypeRegistry, command: &clap::Command, topic: &str) -> Fai
 fn width() -> usize {
     let terminal = terminal_size::terminal_size().filter(|_| std::io::stdout().is_terminal());
     terminal.map_or(WIDTH, |(width, _)| usize::from(width.0).clamp(20, WIDTH))
-}
-
-fn print(text: &str) -> Result<(), Failure> {
-    let mut stdout = std::io::stdout().lock();
-    let written = stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush());
-    written.map_err(|error| match error.kind() {
-        ErrorKind::BrokenPipe => Failure::Unread,
-        _ => Failure::Machine(format!("cannot write to standard output: {error}")),
-    })
 }

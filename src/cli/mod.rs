@@ -38,6 +38,10 @@ use std::process::ExitCode;
 ///
 /// A panic that nobody catches ends it with 101, and with what to send to whoever can mend it.
 pub fn run<M>(plugins: impl Plugins<M>) -> ExitCode {
+    // Of what was typed: another command line is another program's business, which is not to begin again.
+    if std::env::args_os().nth(1).is_some_and(|command| command != "view") {
+        headless::leave_out_window_system();
+    }
     run_from(std::env::args_os(), plugins)
 }
 
@@ -56,9 +60,6 @@ fn run_unguarded<M>(words: &[OsString], plugins: impl Plugins<M>) -> ExitCode {
         Ok(arguments) => arguments,
         Err(shown) => return exit::help(&shown),
     };
-    if !matches!(arguments.command, Command::View(_)) {
-        headless::leave_out_window_system();
-    }
     let filter = env_logger::Env::default().default_filter_or("warn,wgpu_hal=error");
     let mut logger = env_logger::Builder::from_env(filter);
     terminal::log_to(&mut logger);

@@ -2,7 +2,7 @@
 
 use super::arguments::RenderArguments;
 use super::exit::Failure;
-use super::render::frame_path;
+use super::output::Output;
 use crate::loading::FilesRead;
 use crate::picture_file::WriteError;
 use crate::scene::SceneDocument;
@@ -42,13 +42,9 @@ impl Identity {
 
 impl Outputs {
     /// Finds out whether all can be written, each to a file of its own.
-    pub fn check(arguments: &RenderArguments) -> Result<Self, Failure> {
-        let frames =
-            arguments.frames.clone().map(|frames| frames.start..frames.end.min(frames.start + MOST_FRAMES));
-        let pictures: Vec<PathBuf> = match frames {
-            Some(frames) => frames.map(|frame| frame_path(&arguments.output, Some(frame))).collect(),
-            None => vec![arguments.output.clone()],
-        };
+    pub fn check(arguments: &RenderArguments, output: &Output) -> Result<Self, Failure> {
+        let frames = arguments.frames.clone().unwrap_or(0..1);
+        let pictures = output.files(frames.start..frames.end.min(frames.start.saturating_add(MOST_FRAMES)));
         let mut files = Vec::new();
         let mut taken = HashSet::new();
         for path in pictures.into_iter().chain(arguments.stats.clone()) {

@@ -3,22 +3,24 @@
 use super::arguments::RenderArguments;
 use super::exit::{self, Failure};
 use super::open::Input;
+use super::output::{self, Output};
 use super::outputs::Outputs;
-use super::{output, progress};
+use super::progress;
 use crate::components::ViewCamera;
 use crate::gpu::{Gpu, GpuOptions};
 use crate::plain;
 use crate::render::{self, RenderError};
 use crate::report::Report;
 use crate::scene::{Problem, SceneDocument, Severity, nearest};
-use crate::{Picture, Refinement, SceneTime};
+use crate::{CutOut, Picture, Refinement, SceneTime};
 use bevy_app::App;
 use bevy_ecs::prelude::*;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 pub(super) fn run(app: &mut App, arguments: &RenderArguments, started: Instant) -> Result<(), Failure> {
-    let outputs = Outputs::check(arguments)?;
+    let mut output = Output::of(arguments)?;
+    let outputs = Outputs::check(arguments, &output)?;
     let input = Input::of(&arguments.files, &arguments.directions)?;
     app.world_mut().resource_mut::<Report>().spent("start", started);
     // The driver takes its time to wake up; meanwhile the scene is read.
@@ -41,8 +43,9 @@ pub(super) fn run(app: &mut App, arguments: &RenderArguments, started: Instant) 
     app.insert_resource(Picture {
         size: arguments.size,
         camera: arguments.camera.clone(),
-        encoded: !output::wants_radiance(&arguments.output),
+        encoded: output.format.is_encoded(),
     });
+    app.insert_resource(CutOut(arguments.transparent));
     app.insert_resource(Refinement { sets: arguments.passes, per_update: arguments.passes });
     let mut report = app.world_mut().resource_mut::<Report>();
     report.spent("wait for the driver", waiting);
@@ -52,7 +55,6 @@ pub(super) fn run(app: &mut App, arguments: &RenderArguments, started: Instant) 
     let bar = progress::bar(frames.end - frames.start);
     for frame in frames {
         app.world_mut().insert_resource(SceneTime { seconds: frame as f64 / arguments.fps });
-        let path = frame_path(&arguments.output, arguments.frames.is_some().then_some(frame));
         let drawn = render::render(app);
         if let Err(RenderError::Scene) = drawn {
             bar.finish_and_clear();
@@ -61,10 +63,11 @@ pub(super) fn run(app: &mut App, arguments: &RenderArguments, started: Instant) 
         let image = drawn?;
         outputs.spare_read(app.world())?;
         let writing = Instant::now();
-        output::write_image(&path, &image)?;
+        output.write(frame, &image)?;
         app.world_mut().resource_mut::<Report>().spent("write", writing);
         bar.inc(1);
     }
+    output.finish()?;
     bar.finish_and_clear();
     exit::print(&notes(&render::problems(app.world(), &document)));
     if let Some(path) = &arguments.stats {
@@ -110,14 +113,6 @@ pub(super) fn check_camera(world: &mut World, wanted: Option<&str>) -> Result<()
         None => format!("the scene has: {}", names.join(", ")),
     };
     Err(Failure::Usage(plain::message(&format!("there is no camera `{wanted}`: {help}"))))
-}
-
-/// `out.png`, or `out_0007.png` for a frame.
-pub(super) fn frame_path(output: &Path, frame: Option<u64>) -> PathBuf {
-    let Some(frame) = frame else { return output.to_owned() };
-    let stem = output.file_stem().unwrap_or_default().to_string_lossy();
-    let ending = output.extension().unwrap_or_default().to_string_lossy();
-    output.with_file_name(format!("{stem}_{frame:04}.{ending}"))
 }
 
 fn write_stats(world: &World, path: &Path, started: Instant) -> Result<(), Failure> {

@@ -1,5 +1,5 @@
 use super::{
-    AlsoCalled, Range, Slider, Unit, Validate,
+    AlsoCalled, Auto, Range, Slider, Unit, Validate,
     attributes::{ReflectValidate, in_ron},
 };
 use crate::components::Placement;
@@ -17,9 +17,10 @@ use glam::Vec3;
 /// | `frame` | `None`, or `(from, fill)`: the camera stands in the direction `from` of all that can be seen, so far away that it fills this share of the picture; `eye` and `target` play no part | – | `from` not 0 and not along `up`; `fill` 0.01 to 1 | `None`; `from: (0, 0, 1)`, `fill: 0.9` |
 /// | `projection` | `Perspective(vertical_fov)` or `Orthographic(height)` | degrees; scene units | 0.01 to 179; above 0 | `Perspective(vertical_fov: 45.0)` |
 /// | `exposure` | number | EV: each step doubles the brightness | -100 to 100 | 0 |
-/// | `gamma` | encoding exponent of the PNG | – | 0.1 to 10 | 2.2 |
+/// | `gamma` | `Auto` for the curve of sRGB, or an exponent | – | 0.1 to 10 | `Auto` |
 ///
-/// `exposure` and `gamma` concern what a person sees (window, PNG); an EXR holds the radiance as it is. A scene without a camera is
+/// `exposure` and `gamma` concern what a person sees (window, PNG, video); an EXR holds the radiance as it is. Screens and pictures without a
+/// word of their encoding are taken for sRGB (IEC 61966-2-1), which is what `Auto` is; `2.2` is near it, and brighter where it is nearly black. A scene without a camera is
 /// seen from the front, with all of it in the picture.
 ///
 /// ```ron
@@ -48,9 +49,9 @@ pub struct ViewCamera {
     /// Exposure value.
     #[reflect(@Range::new(-100.0, 100.0), @Slider::linear(-8.0, 8.0), @Unit("EV"))]
     pub exposure: f32,
-    /// Encoding exponent.
+    /// How brightness is encoded: as sRGB, or by an exponent.
     #[reflect(@Range::new(0.1, 10.0), @Slider::linear(1.0, 3.0))]
-    pub gamma: f32,
+    pub gamma: Auto<f32>,
 }
 
 impl Default for ViewCamera {
@@ -62,7 +63,7 @@ impl Default for ViewCamera {
             frame: None,
             projection: Projection::default(),
             exposure: 0.0,
-            gamma: 2.2,
+            gamma: Auto::Auto,
         }
     }
 }

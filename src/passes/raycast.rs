@@ -28,14 +28,14 @@ use crate::gpu::{Draw, Gpu, GpuError, PassTimer, Target, texture_of, uniform_arr
 use crate::loading::LoadedVolume;
 use crate::scene::{Problem, Problems};
 use crate::view::{
-    Coarseness, Comparison, FrameBuffers, Part, Picture, Pixels, View, covered, far_background, in_parts,
-    is_wanted,
+    Coarseness, Comparison, CutOut, FAR, FrameBuffers, Part, Picture, Pixels, View, background, covered,
+    in_parts, is_wanted,
 };
 use crate::{Stage, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
-use glam::UVec2;
+use glam::{UVec2, Vec3};
 pub(super) use instance::Lit;
 pub(crate) use instance::VolumeInstance;
 use instance::{instances, lit};
@@ -110,7 +110,12 @@ fn run(
         Res<Picture>,
         Res<SceneSettings>,
     ),
-    (comparison, coarseness, kept_lights): (Res<Comparison>, Res<Coarseness>, Res<KeptLights>),
+    (comparison, cut_out, coarseness, kept_lights): (
+        Res<Comparison>,
+        Res<CutOut>,
+        Res<Coarseness>,
+        Res<KeptLights>,
+    ),
     volumes: Query<VolumeQuery>,
     surface: Res<Surface>,
     mut caster: ResMut<RayCaster>,
@@ -146,7 +151,8 @@ fn run(
             (pixels.within(&columns), instances)
         };
         let parts: Vec<_> = parts.into_iter().map(of_part).collect();
-        draw(&gpu, &frame, &settings, &volumes, &parts, &surface, &caster, timing);
+        let background = background(&settings, &cut_out);
+        draw(&gpu, &frame, background, &volumes, &parts, &surface, &caster, timing);
         report.ran("raycast", &[("pixels", parts.iter().map(|(pixels, _)| pixels.count()).sum())]);
     });
     failure.keep(drawn);
@@ -260,7 +266,7 @@ fn light_volumes<'a>(volumes: &[VolumeData<'a>]) -> Vec<&'a LightVolume> {
 fn draw(
     gpu: &Gpu,
     frame: &FrameBuffers,
-    settings: &SceneSettings,
+    background: Vec3,
     volumes: &[VolumeData],
     parts: &[(Pixels, Vec<VolumeInstance>)],
     surface: &Surface,
@@ -278,12 +284,12 @@ fn draw(
     let instances: Vec<_> = parts.iter().map(instances_in).collect();
     let Some(first) = instances.first() else { return };
     let (entries, distances) = (view_of(&tables.entries), view_of(&tables.distances));
-    let background;
+    let far_away;
     let behind = match surface.colour() {
         Some(target) => &target.view,
         None => {
-            background = background_texture(gpu, settings);
-            &background
+            far_away = far_away_texture(gpu, background);
+            &far_away
         }
     };
     let mut resources = vec![
@@ -318,13 +324,13 @@ fn draw(
         resources[INSTANCES] = instances.as_entire_binding();
         bound.push(([columns.clone(), rows.clone()], resources.clone()));
     }
-    // The last number counts samples.
-    let [r, g, b] = settings.background.to_array().map(f64::from);
+    // The last number counts samples, or says what is hidden: neither there.
+    let [r, g, b] = background.to_array().map(f64::from);
     draw.cover_parts(gpu, &bound, wgpu::Color { r, g, b, a: 0.0 }, &target.view, timing);
 }
 
 /// One texel that says: background, infinitely far away.
-fn background_texture(gpu: &Gpu, settings: &SceneSettings) -> wgpu::TextureView {
-    let texel = far_background(settings).to_array();
+fn far_away_texture(gpu: &Gpu, background: Vec3) -> wgpu::TextureView {
+    let texel = background.extend(FAR).to_array();
     view_of(&texture_of(gpu, "background", UVec2::ONE, FORMAT, bytemuck::bytes_of(&texel)))
 }

@@ -13,7 +13,8 @@ use crate::components::{Phong, Placement, SceneSettings, Shading as ShadingKind,
 use crate::failure::Failure;
 use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, begin, binding, uniform_each};
 use crate::view::{
-    Comparison, FrameBuffers, Part, Picture, View, far_background, in_parts, is_wanted, lights_module, to_eye,
+    Comparison, CutOut, FAR, FrameBuffers, Part, Picture, View, background, in_parts, is_wanted,
+    lights_module, to_eye,
 };
 use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};
@@ -103,14 +104,14 @@ struct Drawn<'a> {
 }
 
 fn run(
-    (gpu, frame, view, picture, settings, comparison): (
+    (gpu, frame, view, picture, settings): (
         Res<Gpu>,
         Res<FrameBuffers>,
         Res<View>,
         Res<Picture>,
         Res<SceneSettings>,
-        Res<Comparison>,
     ),
+    (comparison, cut_out): (Res<Comparison>, Res<CutOut>),
     meshes: Meshes,
     (volumes, shading): (Query<(), With<super::upload::VolumeTexture>>, Shading),
     mut surface: ResMut<Surface>,
@@ -131,7 +132,7 @@ fn run(
         &frame,
         &view,
         &picture,
-        &settings,
+        background(&settings, &cut_out),
         (meshes, &parts),
         &veils,
         &mut surface,
@@ -147,7 +148,7 @@ fn draw(
     frame: &FrameBuffers,
     view: &View,
     picture: &Picture,
-    settings: &SceneSettings,
+    background: Vec3,
     (meshes, parts): (Meshes, &[Part]),
     veils: &Veils,
     surface: &mut Surface,
@@ -169,10 +170,9 @@ fn draw(
     let Some(targets) = &surface.targets else { return Ok(()) };
     let instances: Vec<MeshInstance> = drawn.iter().map(|mesh| mesh.instance.clone()).collect();
     let (instance_buffer, stride) = uniform_each(gpu, "mesh instances", &instances);
-    let background = far_background(settings);
     let mut encoder =
         gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("surface") });
-    let clear = clear_colour(background);
+    let clear = clear_colour(background.extend(FAR));
     let mut pass = begin(&mut encoder, "surface", clear, &targets.colour.view, &targets.depth.view, timing);
     let one = std::num::NonZeroU64::new(MeshInstance::SHADER_SIZE.get());
     let instance = wgpu::BufferBinding { buffer: &instance_buffer, offset: 0, size: one };

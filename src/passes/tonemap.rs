@@ -4,9 +4,10 @@
 
 use super::raycast::RayCaster;
 use super::surface::Surface;
+use crate::components::Auto;
 use crate::failure::Failure;
 use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, binding, uniform_buffer};
-use crate::view::{Picture, View, is_wanted};
+use crate::view::{CutOut, Picture, View, is_wanted};
 use crate::{Stage, mirrors::mirror, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
@@ -27,6 +28,8 @@ pub(crate) struct Tonemap {
     draw: Option<Draw>,
     /// The encoded picture.
     pub encoded: Option<Target>,
+    /// How it is encoded.
+    pub gamma: Auto<f32>,
 }
 
 mirror! {
@@ -35,26 +38,41 @@ mirror! {
     pub(crate) struct DisplayUniform as "Display" {
         gain: f32,
         exponent: f32,
+        last: u32,
     }
 }
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 fn run(
-    (gpu, view, picture): (Res<Gpu>, Res<View>, Res<Picture>),
+    (gpu, view, picture, cut_out): (Res<Gpu>, Res<View>, Res<Picture>, Res<CutOut>),
     (surface, caster): (Res<Surface>, Res<RayCaster>),
     mut tonemap: ResMut<Tonemap>,
     mut timer: Option<ResMut<PassTimer>>,
     (mut report, mut failure): (ResMut<Report>, ResMut<Failure>),
 ) {
     let Some(radiance) = caster.radiance().or(surface.colour()).filter(|_| picture.encoded) else { return };
+    let last = match (cut_out.0, caster.radiance()) {
+        (false, _) => 0,
+        (true, Some(_)) => 1,
+        (true, None) => 2,
+    };
+    let display = DisplayUniform {
+        gain: view.exposure.exp2(),
+        exponent: match view.gamma {
+            Auto::Auto => 0.0,
+            Auto::Value(gamma) => gamma.recip(),
+        },
+        last,
+    };
+    tonemap.gamma = view.gamma;
     let timing = timer.as_mut().and_then(|timer| timer.time("tonemap"));
-    failure.keep(draw(&gpu, &view, &picture, radiance, &mut tonemap, timing, &mut report));
+    failure.keep(draw(&gpu, &display, &picture, radiance, &mut tonemap, timing, &mut report));
 }
 
 fn draw(
     gpu: &Gpu,
-    view: &View,
+    display: &DisplayUniform,
     picture: &Picture,
     radiance: &Target,
     tonemap: &mut Tonemap,
@@ -83,11 +101,7 @@ fn draw(
         tonemap.encoded = Some(target);
     }
     let (Some(draw), Some(target)) = (&tonemap.draw, &tonemap.encoded) else { return Ok(()) };
-    let display = uniform_buffer(
-        gpu,
-        "display",
-        &DisplayUniform { gain: view.exposure.exp2(), exponent: view.gamma.recip() },
-    );
+    let display = uniform_buffer(gpu, "display", display);
     let resources = [display.as_entire_binding(), wgpu::BindingResource::TextureView(&radiance.view)];
     draw.cover(gpu, &resources, &target.view, timing);
     report.ran("tonemap", &[("pixels", u64::from(picture.size.x) * u64::from(picture.size.y))]);

@@ -88,6 +88,11 @@ pub(crate) fn is_wanted(drawing: Res<Drawing>, failure: Res<Failure>) -> bool {
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
 pub struct Comparison(pub Option<Split>);
 
+/// Whether pictures leave the background out: it is then black, so that radiance is what is in front of it, and
+/// [`Image::coverage`](crate::render::Image::coverage) says how much of it each pixel hides.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CutOut(pub bool);
+
 /// Where a picture is split, and how its sides are shaded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Split {

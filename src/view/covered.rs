@@ -74,7 +74,7 @@ mod tests {
     fn view(projection: Projection) -> View {
         let viewpoint =
             Viewpoint { eye: DVec3::new(0.0, 0.0, 10.0), target: DVec3::ZERO, up: DVec3::Y, projection };
-        View::from_viewpoint(viewpoint, 0.0, 2.2)
+        View::from_viewpoint(viewpoint, 0.0, Default::default())
     }
 
     /// A cube with this edge around a place.

@@ -217,7 +217,7 @@ mod tests {
 
     /// Where a point appears: half heights from the middle, y up.
     fn seen(orbit: &Orbit, point: DVec3) -> DVec2 {
-        let view = crate::view::View::from_viewpoint(orbit.viewpoint(Some(BOX)), 0.0, 2.2);
+        let view = crate::view::View::from_viewpoint(orbit.viewpoint(Some(BOX)), 0.0, Default::default());
         let eye = view.eye_from_scene.transform_point3(point);
         let half = f64::from(view.half_extent(SIZE).y);
         let depth = if orbit.is_orthographic() { 1.0 } else { -eye.z };
@@ -355,7 +355,7 @@ mod tests {
         orbit.zoom(1e-3, DVec2::ZERO, Some(BOX));
         for turn in 0..16 {
             orbit.orbit(DVec2::new(0.13, if turn % 4 < 2 { 0.2 } else { -0.2 }));
-            let view = crate::view::View::from_viewpoint(orbit.viewpoint(Some(BOX)), 0.0, 2.2);
+            let view = crate::view::View::from_viewpoint(orbit.viewpoint(Some(BOX)), 0.0, Default::default());
             for corner in crate::loading::corners((BOX.0.as_vec3(), BOX.1.as_vec3())) {
                 assert!(view.eye_from_scene.transform_point3(corner).z < 0.0);
             }
