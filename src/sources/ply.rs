@@ -103,7 +103,7 @@ impl<R: BufRead> Reader<'_, R> {
                 short_faces += u64::from(!face.push(draft, normals, texture));
             })?,
             "tristrips" => {
-                self.each(element, |draft, face: Face| face.push_strips(draft, normals, texture))?
+                self.each(element, |draft, face: Face| face.push_strips(draft, normals, texture))?;
             }
             _ => self.each(element, |_, _: Skipped| {})?,
         }

@@ -148,14 +148,13 @@ impl Parts {
         self.part_of[first] = index;
         while let Some(triangle) = reached.pop() {
             self.measure(facing, triangle, &mut part);
-            for side in 3 * triangle..3 * triangle + 3 {
-                let partner = partners[side];
+            for (side, &partner) in partners.iter().enumerate().skip(3 * triangle).take(3) {
                 if partner == NONE {
                     continue;
                 }
                 let beside = partner as usize / 3;
                 let agree = ends_of(facing.triangles, side as u32).0 == ends_of(facing.triangles, partner).1;
-                let differs = self.differs[triangle] != !agree;
+                let differs = self.differs[triangle] == agree;
                 if self.part_of[beside] == NONE {
                     self.part_of[beside] = index;
                     self.differs[beside] = differs;
