@@ -13,8 +13,7 @@ fn classified_at(place: vec3f) -> vec4f {
     let voxel = voxel_in(place);
     let at = entry_of(voxel);
     let below = clamp(floor(at), 0.0, classified.last - 1.0);
-    let entry = vec2u(u32(below), 0u);
-    let found = mix(textureLoad(table, entry, 0), textureLoad(table, entry + vec2u(1u, 0u), 0), at - below);
+    let found = mix(entry(u32(below)), entry(u32(below) + 1u), at - below);
     return vec4f(found.rgb, found.a * voxel.shown);
 }
 

@@ -49,9 +49,8 @@ fn passed_at(place: vec3f) -> Passed {
 
 fn passed_to(at: f32, shown: f32) -> Passed {
     let below = clamp(floor(at), 0.0, classified.last - 1.0);
-    let entry = vec2u(u32(below), 0u);
-    let low = textureLoad(table, entry, 0);
-    let high = textureLoad(table, entry + vec2u(1u, 0u), 0);
+    let low = entry(u32(below));
+    let high = entry(u32(below) + 1u);
     let part = at - below;
     let rise = high.w - low.w;
     let more = part * (low.w + 0.5 * part * rise);
@@ -72,6 +71,10 @@ fn depth_between(one: Passed, other: Passed) -> f32 {
             back = front;
             back.shown = 0.0;
         }
+    }
+    if ANY_NEAREST {
+        // Nothing lies between the values of two voxels.
+        return segments.length * 0.5 * (front.shown * front.sigma_t + back.shown * back.sigma_t);
     }
     let across = back.entry - front.entry;
     let integral = (back.depth.x - front.depth.x) + (back.depth.y - front.depth.y);

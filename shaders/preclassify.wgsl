@@ -9,6 +9,9 @@ struct Voxels {
     // Place in the table = texel * scale + offset.
     lookup_scale: f32,
     lookup_offset: f32,
+    // Entries of the table, and whether each is a value of its own.
+    entries: u32,
+    is_exact: u32,
     // What colour and extinction are shares of.
     greatest_colour: f32,
     greatest_extinction: f32,
@@ -16,8 +19,12 @@ struct Voxels {
 
 @group(0) @binding(0) var<uniform> voxels: Voxels;
 @group(0) @binding(1) var samples: texture_3d<f32>;
-@group(0) @binding(2) var entries: texture_2d<f32>;
+@group(0) @binding(2) var table: texture_2d<f32>;
 @group(0) @binding(3) var classified: texture_storage_3d<rgba16float, write>;
+
+fn entry(index: u32) -> vec4f {
+    return textureLoad(table, vec2u(index % TABLE_ROW, index / TABLE_ROW), 0);
+}
 
 @compute @workgroup_size(64)
 fn preclassify(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {
@@ -29,11 +36,11 @@ fn preclassify(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
         return;
     }
     let here = voxel_of(textureLoad(samples, voxel, 0));
-    let last = f32(textureDimensions(entries).x - 1u);
-    let place = clamp(here.texel * voxels.lookup_scale + voxels.lookup_offset, 0.0, 1.0) * last;
+    let last = f32(voxels.entries - 1u);
+    let between = clamp(here.texel * voxels.lookup_scale + voxels.lookup_offset, 0.0, 1.0) * last;
+    let place = select(between, round(between), voxels.is_exact == 1u);
     let below = min(floor(place), last - 1.0);
-    let entry = vec2u(u32(below), 0u);
-    let found = mix(textureLoad(entries, entry, 0), textureLoad(entries, entry + vec2u(1u, 0u), 0), place - below);
+    let found = mix(entry(u32(below)), entry(u32(below) + 1u), place - below);
     let extinction = here.shown * found.a / voxels.greatest_extinction;
     let shares = vec4f(found.rgb / voxels.greatest_colour * extinction, extinction);
     textureStore(classified, voxel, shares);

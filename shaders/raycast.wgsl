@@ -29,8 +29,10 @@ struct VolumeInstance {
     // Place in the lookup table = texel * scale + offset.
     lookup_scale: f32,
     lookup_offset: f32,
-    // Entries of the table; its row is the volume's index.
+    // Entries of the table, its first row, and whether each is a value of its own.
     table_entries: u32,
+    table_row: u32,
+    is_exact: u32,
     // The first of the volume's bricks.
     bricks_start: u32,
     // Bricks along each axis.
@@ -77,7 +79,7 @@ struct March {
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> lights: array<Light, LIGHT_CAPACITY>;
 @group(0) @binding(2) var<uniform> volumes: array<VolumeInstance, VOLUMES>;
-// One row a volume: colour and extinction.
+// Rows of entries: colour and extinction.
 @group(0) @binding(3) var tables: texture_2d<f32>;
 // Rows of BRICK_ROW bricks: distance to the nearest brick that holds something, in bricks; 0 is such a brick.
 @group(0) @binding(4) var brick_distances: texture_2d<u32>;
@@ -116,6 +118,8 @@ struct Lookup {
     last: f32,
     scale: f32,
     offset: f32,
+    row: u32,
+    is_exact: bool,
 }
 
 fn brick_distance(bricks: vec3u, first: u32, at: vec3u) -> f32 {
@@ -123,11 +127,20 @@ fn brick_distance(bricks: vec3u, first: u32, at: vec3u) -> f32 {
     return f32(textureLoad(brick_distances, vec2u(brick % BRICK_ROW, brick / BRICK_ROW), 0).r);
 }
 
+fn lookup_of(volume: VolumeInstance) -> Lookup {
+    let last = f32(volume.table_entries - 1u);
+    return Lookup(last, volume.lookup_scale, volume.lookup_offset, volume.table_row, volume.is_exact == 1u);
+}
+
 // Colour and extinction of a texel.
-fn look_up(index: u32, lookup: Lookup, texel: f32) -> vec4f {
+fn look_up(lookup: Lookup, texel: f32) -> vec4f {
     let place = clamp(texel * lookup.scale + lookup.offset, 0.0, 1.0) * lookup.last;
+    if ANY_EXACT && lookup.is_exact {
+        let entry = u32(round(place));
+        return textureLoad(tables, vec2u(entry % TABLE_ROW, lookup.row + entry / TABLE_ROW), 0);
+    }
     let below = min(floor(place), lookup.last - 1.0);
-    let entry = vec2u(u32(below), index);
+    let entry = vec2u(u32(below), lookup.row);
     return mix(textureLoad(tables, entry, 0), textureLoad(tables, entry + vec2u(1u, 0u), 0), place - below);
 }
 
@@ -146,7 +159,7 @@ struct Normal {
     steepness: f32,
 }
 
-// What gradients are taken of. What is missing counts as less than any value, so that the medium's end is a surface.
+// What gradients are taken of where values are interpolated. What is missing counts as less than any value, so that the medium's end is a surface.
 fn field_at(index: u32, volume: VolumeInstance, place: vec3f) -> f32 {
     let voxel = voxel_at(index, place);
     if ANY_PARTIAL {
@@ -155,8 +168,12 @@ fn field_at(index: u32, volume: VolumeInstance, place: vec3f) -> f32 {
     return voxel.texel;
 }
 
-fn normal_at(index: u32, volume: VolumeInstance, place: vec3f, ray: Ray) -> Normal {
+// How much more of the field there is ahead along each axis than behind, two voxels apart.
+fn rise_at(index: u32, volume: VolumeInstance, place: vec3f) -> vec3f {
     let voxel = 1.0 / volume.size;
+    if ANY_SURFACES && has_surfaces(index) {
+        return rise_of_extinction(index, place, voxel);
+    }
     let x = vec3f(voxel.x, 0.0, 0.0);
     let y = vec3f(0.0, voxel.y, 0.0);
     let z = vec3f(0.0, 0.0, voxel.z);
@@ -170,13 +187,32 @@ fn normal_at(index: u32, volume: VolumeInstance, place: vec3f, ray: Ray) -> Norm
         field_at(index, volume, place - y),
         field_at(index, volume, place - z),
     );
+    return ahead - behind;
+}
+
+// The same of extinction, as a share of its greatest, over the 4 x 4 x 4 voxels around: of values that are not interpolated there is no gradient.
+fn rise_of_extinction(index: u32, place: vec3f, voxel: vec3f) -> vec3f {
+    var rise = vec3f(0.0);
+    for (var corner = 0u; corner < 8u; corner += 1u) {
+        let side = 2.0 * vec3f(vec3u(corner & 1u, (corner >> 1u) & 1u, corner >> 2u)) - 1.0;
+        rise += side * voxels_at(index, place + side * voxel).a;
+    }
+    return 0.25 * rise;
+}
+
+fn normal_at(index: u32, volume: VolumeInstance, place: vec3f, ray: Ray) -> Normal {
+    let rise = rise_at(index, volume, place);
+    var scale = volume.lookup_scale;
+    if ANY_SURFACES && has_surfaces(index) {
+        scale = 1.0;
+    }
     // The gradient is a covector: it goes through the transpose.
-    let gradient = (vec4f((ahead - behind) * volume.size, 0.0) * volume.texture_from_eye).xyz;
+    let gradient = (vec4f(rise * volume.size, 0.0) * volume.texture_from_eye).xyz;
     let steepest = max(abs(gradient.x), max(abs(gradient.y), abs(gradient.z)));
-    let flat = steepest * volume.lookup_scale * volume.step < 1e-6;
+    let flat = steepest * scale * volume.step < 1e-6;
     let scaled = gradient / max(steepest, 1e-30);
     let along = scaled * inverseSqrt(max(dot(scaled, scaled), 1e-30));
-    let steepness = 0.5 * length(ahead - behind) * volume.lookup_scale;
+    let steepness = 0.5 * length(rise) * scale;
     return Normal(select(along, -along, dot(along, ray.direction) > 0.0), flat, steepness);
 }
 
@@ -289,7 +325,7 @@ fn found_at(index: u32, volume: VolumeInstance, lookup: Lookup, classification: 
         return Found(found.rgb, found.a);
     }
     let voxel = voxel_at(index, at);
-    let found = look_up(index, lookup, voxel.texel);
+    let found = look_up(lookup, voxel.texel);
     return Found(found.rgb, found.a * voxel.shown);
 }
 
@@ -349,7 +385,7 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let classification = classification_of(index);
         let integrated = ANY_PRE_INTEGRATED && classification == PRE_INTEGRATED;
         let alone = !ANY_OFTEN || integrated || volume.lighting < 4u;
-        let lookup = Lookup(f32(volume.table_entries - 1u), volume.lookup_scale, volume.lookup_offset);
+        let lookup = lookup_of(volume);
         let direction = (volume.texture_from_eye * vec4f(ray.direction, 0.0)).xyz;
         let start = (volume.texture_from_eye * vec4f(ray.origin, 1.0)).xyz + direction * enter;
         var ways: array<LightWay, LIGHT_WAYS>;

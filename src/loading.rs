@@ -1,9 +1,12 @@
 //! The files that components name, read into the world.
 
+mod labels;
+
 use crate::Stage;
 use crate::components::{
-    self, Auto, DataFrame, Mesh, Place, Placement, Subsurface, TransferFunction, Volume,
+    self, Auto, DataFrame, LabelColour, Mesh, Place, Placement, Subsurface, TransferFunction, Volume,
 };
+use crate::optics::transfer::{domain_around, domain_of_labels};
 use crate::scene::{EntityProblems, Problem};
 use crate::sources::trail::{self, FileState, Trail};
 use crate::sources::{
@@ -62,10 +65,16 @@ impl LoadedVolume {
         Vec3::from(self.data.size.map(|voxels| voxels as f32)) * self.data.spacing * 0.5
     }
 
-    /// The data values at the ends of a transfer function's domain: those written, or else those that a preset is about, that the file
-    /// recommends, or that the data have.
+    /// The data values at the ends of a transfer function's table: those of its labels, those written, or else those that a preset is about, that
+    /// the file recommends, or that the data have.
     pub fn domain(&self, function: &TransferFunction) -> (f32, f32) {
         let data = &self.data;
+        let labels = domain_of_labels(&function.labels).or_else(|| {
+            self.default_labels(function).map(|labels| domain_around(*labels.start(), *labels.end()))
+        });
+        if let Some(domain) = labels {
+            return domain;
+        }
         let automatic = function
             .preset_domain()
             .or(data.window.filter(|window| window.0 < window.1))
@@ -78,9 +87,15 @@ impl LoadedVolume {
         }
     }
 
-    /// The function with the points of its preset, if it has one.
+    /// The function that a volume is drawn with: the one written, with the points of its preset, if it has one; of a label map without any, a
+    /// colour for each label.
     pub fn function_in_force(&self, function: &TransferFunction) -> TransferFunction {
-        function.in_force(Some(&self.data.histogram), self.domain(function))
+        match self.default_labels(function) {
+            Some(values) => {
+                TransferFunction { preset: None, labels: self.colours_of(values), ..function.clone() }
+            }
+            None => function.in_force(Some(&self.data.histogram), self.domain(function)),
+        }
     }
 }
 
@@ -290,7 +305,14 @@ fn notes_on(volume: &Volume, data: &VolumeData) -> impl Iterator<Item = Problem>
             data.samples.len()
         )
     });
-    data.notes.iter().cloned().chain(note_on_place(volume, data)).chain(unfit).map(Problem::note)
+    let labels = labels::notes(volume, data);
+    data.notes
+        .iter()
+        .cloned()
+        .chain(note_on_place(volume, data))
+        .chain(unfit)
+        .chain(labels)
+        .map(Problem::note)
 }
 
 /// The field of a [`Volume`] that an error is about.
@@ -366,6 +388,8 @@ pub enum Contents {
         non_finite: u64,
         /// How often each value occurs.
         histogram: sources::Histogram,
+        /// Of a label map, the labels that occur, in the colours that they have by default, and how many voxels each has.
+        labels: Vec<(LabelColour, u64)>,
     },
 }
 
@@ -377,13 +401,14 @@ pub fn contents(world: &mut World) -> Vec<(String, Contents)> {
         if let Some(data) = mesh.and_then(|mesh| mesh.data.as_ref()) {
             all.push((name.to_string(), Contents::Mesh(data.statistics())));
         }
-        if let Some(LoadedVolume { data, .. }) = volume {
+        if let Some(volume) = volume {
+            let data = &volume.data;
             let (size, format) = (data.size, data.samples.format());
             let (spacing, range, non_finite) = (data.spacing, data.range, data.non_finite);
-            let histogram = data.histogram.clone();
+            let (histogram, labels) = (data.histogram.clone(), volume.label_counts());
             all.push((
                 name.to_string(),
-                Contents::Volume { size, format, spacing, range, non_finite, histogram },
+                Contents::Volume { size, format, spacing, range, non_finite, histogram, labels },
             ));
         }
     }

@@ -80,25 +80,32 @@ pub fn all() -> Vec<Mirror> {
     ]
 }
 
-/// The modules of shaders that are made as the scene needs them, for one that needs all variants: two volumes, of which the sampler
-/// interpolates one and the shader the other, and which are classified in different ways.
+/// The modules of shaders that are made as the scene needs them, for one that needs all variants: three volumes, of which the sampler
+/// interpolates one and the shader another, and which are classified in different ways.
 pub fn generated_modules() -> Vec<(&'static str, String)> {
     use crate::components::Classification::{Pre, PreIntegrated};
     use crate::gpu::Filtering::{Sampler, Shader};
     use crate::gpu::Texels::{Masked, Values};
+    use crate::passes::classification::Manner;
     use crate::passes::raycast::Scattered::{Nothing, TowardsEye};
     use crate::passes::voxels::{self, Reading};
-    let plain = Reading { filtering: Sampler, texels: Values };
-    let masked = Reading { filtering: Shader, texels: Masked };
+    let manners = [
+        Manner { classification: Pre, ..Manner::POST },
+        Manner { classification: PreIntegrated, ..Manner::POST },
+        Manner { is_exact: true, has_surfaces: true, ..Manner::POST },
+    ];
+    let plain = Reading { filtering: Sampler, texels: Values, is_nearest: false };
+    let nearest = Reading { is_nearest: true, ..plain };
+    let masked = Reading { filtering: Shader, texels: Masked, is_nearest: false };
     let count = passes::light_volume::through::VeilCount { volumes: 2, lights: 1 };
     // Behind the bindings of every shader that has these modules.
-    let (volumes, first, classified) = (16, 18, 32);
+    let (volumes, first, classified) = (50, 18, 32);
     let [light_volumes, veils] = passes::light_volume::through::modules(count, Sampler, first);
     vec![
-        ("volumes", voxels::module(&[plain, masked], volumes)),
+        ("volumes", voxels::module(&[plain, masked, nearest], volumes)),
         voxels::texels_module(masked),
         passes::lighting::Kinds::all().module(),
-        passes::raycast::classifications_module(&[Pre, PreIntegrated], classified),
+        passes::raycast::classifications_module(&manners, classified),
         view::lights_module(4),
         light_volumes,
         veils,

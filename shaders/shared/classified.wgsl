@@ -6,8 +6,9 @@ struct Classified {
     // Place in the table = texel * scale + offset.
     lookup_scale: f32,
     lookup_offset: f32,
-    // The last entry of the table.
+    // The last entry of the table, and whether each is a value of its own.
     last: f32,
+    is_exact: u32,
     // Voxels along each axis.
     size: vec3f,
     bricks: vec3u,
@@ -33,5 +34,10 @@ fn voxel_in(place: vec3f) -> Voxel {
 
 // Its place in the table, in entries.
 fn entry_of(voxel: Voxel) -> f32 {
-    return clamp(voxel.texel * classified.lookup_scale + classified.lookup_offset, 0.0, 1.0) * classified.last;
+    let place = clamp(voxel.texel * classified.lookup_scale + classified.lookup_offset, 0.0, 1.0) * classified.last;
+    return select(place, round(place), classified.is_exact == 1u);
+}
+
+fn entry(index: u32) -> vec4f {
+    return textureLoad(table, vec2u(index % TABLE_ROW, index / TABLE_ROW), 0);
 }

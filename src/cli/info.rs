@@ -5,8 +5,10 @@ use super::exit::{self, Failure};
 use super::open::{Directions, Input};
 use super::render::gpu_description;
 use super::terminal;
+use crate::components::LabelColour;
 use crate::gpu::{Gpu, GpuOptions};
 use crate::loading::{Contents, contents};
+use crate::optics::labels::srgb_of_linear;
 use crate::plain;
 use crate::render;
 use crate::sources::Histogram;
@@ -67,7 +69,8 @@ fn describe(contents: &Contents, for_machines: bool) -> Value {
             "mean thickness": mesh.thickness,
             "bounds": mesh.bounds.map(|(low, high)| [low.to_array(), high.to_array()]),
         }),
-        Contents::Volume { size, format, spacing, range, non_finite, histogram } => json!({
+        Contents::Volume { size, format, spacing, range, non_finite, histogram, labels } => {
+            let mut facts = json!({
             "size": size,
             "format": format!("{format:?}"),
             "spacing mm": spacing.to_array(),
@@ -78,8 +81,29 @@ fn describe(contents: &Contents, for_machines: bool) -> Value {
             } else {
                 sparkline(histogram).into()
             },
-        }),
+            });
+            if !labels.is_empty() {
+                facts["labels"] = labels.iter().map(|label| describe_label(label, for_machines)).collect();
+            }
+            facts
+        }
     }
+}
+
+/// A label by its value: colour as sRGB encodes it, opacity, name, voxels.
+fn describe_label((label, voxels): &(LabelColour, u64), for_machines: bool) -> (String, Value) {
+    let [red, green, blue] =
+        srgb_of_linear(label.color).to_array().map(|channel| (255.0 * channel).round() as u8);
+    let colour = format!("#{red:02x}{green:02x}{blue:02x}");
+    let LabelColour { opacity, name, .. } = label;
+    let facts = if for_machines {
+        json!({ "colour": colour, "opacity": opacity, "name": name, "voxels": voxels })
+    } else {
+        let opacity = if *opacity == 1.0 { String::new() } else { format!(", opacity {opacity}") };
+        let name = if name.is_empty() { String::new() } else { format!(", {name}") };
+        format!("{colour}{opacity}, {voxels} voxels{name}").into()
+    };
+    (label.value.to_string(), facts)
 }
 
 /// A histogram as a line of bars between its ends; their heights are logarithms of the counts, as one value often outnumbers the others.

@@ -40,7 +40,7 @@ pub use scattering_maps::{MapResolution, MapStrategy, SampleRadius, ScatteringMa
 pub use scene_settings::SceneSettings;
 pub use shading::Shading;
 pub use subsurface::{DipoleModel, Material, Specular, Subsurface};
-pub use transfer_function::{Classification, ControlPoint, IsoValue, Preset, TransferFunction};
+pub use transfer_function::{Classification, ControlPoint, IsoValue, LabelColour, Preset, TransferFunction};
 pub(crate) use transform::place;
 pub use transform::{DataFrame, Motion, Placement, Scale, Transform};
 pub use view_camera::{Framing, Projection, ViewCamera};

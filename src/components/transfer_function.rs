@@ -19,6 +19,7 @@ use glam::{Vec2, Vec3};
 /// | `domain` | `Auto` or (low, high) | data values | low below high | `Auto`: that of a preset in units; or what the file recommends (DICOM's window, NIfTI's `cal_min` and `cal_max`); or the range of the data, without fill values and extremes that would stretch it to more than twice its length |
 /// | `points` | list of (position, (r, g, b), opacity) | position 0..1 in the domain | sorted; opacity 0 to 1 | a ramp from clear to white |
 /// | `iso` | list of (value, width, color, absorption) | data values; per `opacity_length` | – | none |
+/// | `labels` | list of (value, color, opacity, name) | data values | whole, -32,768 to 65,535; each once | none |
 /// | `entries` | entries of the lookup table | – | 2 to 8,192; to 1,024 where `PreIntegrated` | 1024 |
 /// | `classification` | `Post`, `Pre` or `PreIntegrated` | – | – | `Post` |
 /// | `opacity_length` | `Auto` or a length | mm | above 0 | `Auto`: one voxel of the shortest spacing |
@@ -29,7 +30,7 @@ use glam::{Vec2, Vec3};
 /// | preset | shows |
 /// |---|---|
 /// | `Ramp` | from clear to white over the domain |
-/// | `Object` | what lies above the background, faint to bright |
+/// | `Object` | what lies above the background, faint to bright; of a label map, each label in a colour of its own |
 /// | `Surface`, `Shells` | one level set at the border of the background; three, each within the one before |
 /// | `Glow`, `Mist` | a veil of violet with red, orange and white inside; pale blue with bright cores |
 /// | `CT bone`, `CT soft tissue`, `CT lungs`, `CT vessels` | of computed tomography, in Hounsfield units |
@@ -47,6 +48,13 @@ use glam::{Vec2, Vec3};
 /// `absorption`, however steep the field is there and however long a step the ray takes. It is seen wherever the ends of a segment lie on
 /// different sides of `value`, and is as exact in place as one entry of the table. Outside the domain there is none.
 ///
+/// # Labels
+///
+/// Where the values of a volume name what is there, as in a segmentation, no value lies between two others. `labels` says what each looks like;
+/// with any, they are the whole function: values that are not listed are clear, `points` and `iso` are to be empty, `domain` and `entries` play no
+/// part, and voxels are not mixed whatever `Volume` and `classification` say. A label map (see [`Volume`](super::Volume)) whose function has none of
+/// `domain`, `points`, `iso`, `labels` and no preset but `Object` has the colours of its file, where there are any, and else a palette by value; label 0 is clear.
+///
 /// # Classification
 ///
 /// A ray cuts a volume into segments. They differ in what is made of one:
@@ -60,7 +68,8 @@ use glam::{Vec2, Vec3};
 /// `PreIntegrated` (Engel, Kraus and Ertl 2001) takes values beyond the domain for its ends, and its table is for segments of `RayCast.step`;
 /// where a segment is cut short by the end of the volume or a mesh its depth is exact and its colour that of a whole one.
 /// `Pre` interpolates extinction and colour times extinction, so what is clear has no colour to bleed; both have 11 bits, over a range of
-/// 1 to 10^-7 of their greatest. It is the oldest of the three, and there to compare with.
+/// 1 to 10^-7 of their greatest. It is the oldest of the three, and there to compare with. Where a volume's `interpolation` is `Nearest` there is
+/// nothing between voxels, and all three show the same: the function at each voxel.
 ///
 /// Like every component it can be kept in a file of its own: `TransferFunction: File("transfer_functions/bone.ron")`.
 ///
@@ -69,6 +78,7 @@ use glam::{Vec2, Vec3};
 /// TransferFunction: Preset("CT bone")
 /// TransferFunction: (iso: [(value: 0.0, width: 0.02, color: (1.0, 0.8, 0.0), absorption: 1.0)])
 /// TransferFunction: (iso: [(value: 0.0, width: 0.0, absorption: 3.0)], classification: PreIntegrated)
+/// TransferFunction: (labels: [(value: 2, color: (0.8, 0.1, 0.1), name: "liver"), (value: 7, color: (0.9, 0.8, 0.6), opacity: 0.2)])
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, PartialEq, Validate)]
@@ -84,6 +94,8 @@ pub struct TransferFunction {
     pub points: Vec<ControlPoint>,
     /// Level sets shown on top.
     pub iso: Vec<IsoValue>,
+    /// What each value looks like where values are labels; the whole function where there are any.
+    pub labels: Vec<LabelColour>,
     /// Entries of the lookup table.
     #[reflect(@Range::new(2.0, 8192.0), @Slider::logarithmic(16.0, 8192.0))]
     pub entries: u32,
@@ -101,6 +113,7 @@ impl Default for TransferFunction {
             domain: Auto::Auto,
             points: Vec::new(),
             iso: Vec::new(),
+            labels: Vec::new(),
             entries: 1024,
             classification: Classification::Post,
             opacity_length: Auto::Auto,
@@ -128,12 +141,41 @@ impl TransferFunction {
         self.preset()?.domain()
     }
 
-    /// The points in force: those written, or a ramp from clear to white where neither points nor iso values are.
+    /// Whether nothing says what single values look like: then those of a label map have a colour each.
+    pub fn leaves_labels_alone(&self) -> bool {
+        let is_general = |preset: &String| preset == Preset::Object.name();
+        self.domain == Auto::Auto
+            && self.preset.as_ref().is_none_or(is_general)
+            && self.points.is_empty()
+            && self.iso.is_empty()
+            && self.labels.is_empty()
+    }
+
+    /// The points in force: those written, or a ramp from clear to white where neither points nor iso values nor labels are.
     pub fn points_in_force(&self) -> Vec<ControlPoint> {
-        if !self.points.is_empty() || !self.iso.is_empty() {
+        if !self.points.is_empty() || !self.iso.is_empty() || !self.labels.is_empty() {
             return self.points.clone();
         }
         vec![ControlPoint(0.0, Vec3::ZERO, 0.0), ControlPoint(1.0, Vec3::ONE, 0.1)]
+    }
+}
+
+impl TransferFunction {
+    /// What is wrong with labels, if anything is.
+    fn problem_of_labels(&self) -> Option<String> {
+        let others = [
+            ("preset", self.preset.is_some()),
+            ("points", !self.points.is_empty()),
+            ("iso", !self.iso.is_empty()),
+        ];
+        if let Some((other, _)) = others.iter().find(|(_, is_written)| *is_written && !self.labels.is_empty())
+        {
+            return Some(format!("labels are a whole function; leave out `{other}`, or the labels"));
+        }
+        let mut values: Vec<i32> = self.labels.iter().map(|label| label.value).collect();
+        values.sort_unstable();
+        let twice = values.windows(2).find(|pair| pair[0] == pair[1])?;
+        Some(format!("each label stands once, found {} twice", twice[0]))
     }
 }
 
@@ -154,6 +196,7 @@ impl Validate for TransferFunction {
                 format!("points must be sorted by position, found {} after {}", pair[1].0, pair[0].0),
             ));
         }
+        problems.extend(self.problem_of_labels().map(|problem| ("labels", problem)));
         let pre_integrated = self.classification == Classification::PreIntegrated;
         if pre_integrated && self.entries > Classification::MOST_ENTRIES {
             problems.push((
@@ -214,6 +257,36 @@ pub struct IsoValue {
 impl Default for IsoValue {
     fn default() -> Self {
         Self { value: 0.0, width: 0.02, color: Vec3::new(1.0, 0.8, 0.0), absorption: 1.0 }
+    }
+}
+
+/// What a value looks like that names something.
+#[derive(Reflect, Clone, Debug, PartialEq)]
+#[reflect(Default, PartialEq)]
+pub struct LabelColour {
+    /// The value of its voxels.
+    #[reflect(@Range::new(LabelColour::LEAST as f64, LabelColour::GREATEST as f64), @Unit("data values"))]
+    pub value: i32,
+    /// Emitted radiance at full opacity.
+    #[reflect(@Range::non_negative(), @Rgb::Colour)]
+    pub color: Vec3,
+    /// The share of the light that a slab of `opacity_length` absorbs.
+    #[reflect(@Range::new(0.0, 1.0))]
+    pub opacity: f32,
+    /// What it is, for people.
+    pub name: String,
+}
+
+impl LabelColour {
+    /// The least value that can have a colour.
+    pub const LEAST: i32 = -32_768;
+    /// The greatest value that can have a colour.
+    pub const GREATEST: i32 = 65_535;
+}
+
+impl Default for LabelColour {
+    fn default() -> Self {
+        Self { value: 1, color: Vec3::ONE, opacity: 1.0, name: String::new() }
     }
 }
 

@@ -117,6 +117,15 @@ impl VolumeLighting {
         }
     }
 
+    /// Whether surfaces in the volume have normals that it shades by.
+    pub(crate) fn takes_normals(&self) -> bool {
+        match self {
+            Self::Gradient { .. } => true,
+            Self::LightVolume { gradient_specular, .. } => *gradient_specular > 0.0,
+            Self::EmissionAbsorption | Self::SingleScattering { .. } => false,
+        }
+    }
+
     /// Nodes per voxel at which the light that arrives is kept, of lightings that need it.
     pub fn light_resolution(&self) -> Option<f32> {
         match self {

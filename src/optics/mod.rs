@@ -7,6 +7,7 @@ pub mod calibration;
 pub mod diffusion;
 pub mod dipole;
 pub mod fresnel;
+pub mod labels;
 pub mod materials;
 pub mod medium;
 pub mod moments;

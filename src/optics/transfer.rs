@@ -1,6 +1,6 @@
 //! A transfer function as a table: colour and extinction by data value.
 
-use crate::components::{ControlPoint, IsoValue, TransferFunction};
+use crate::components::{ControlPoint, IsoValue, LabelColour, TransferFunction};
 use glam::{DVec3, Vec3, Vec4};
 
 /// The greatest opacity that an extinction is derived from: one step of 32-bit floats below 1.
@@ -13,6 +13,8 @@ pub struct LookupTable {
     pub entries: Vec<Vec4>,
     /// Iso values of no width within the domain, by position.
     pub layers: Vec<Layer>,
+    /// Whether each entry is a value of its own, with nothing between it and the next.
+    pub is_exact: bool,
 }
 
 /// A surface without thickness. In a table it fills the cell between two entries that it lies in.
@@ -29,7 +31,7 @@ pub struct Layer {
 }
 
 impl LookupTable {
-    /// Samples `function` over `domain` (data values). `voxel` is the shortest spacing of the volume in millimetres, the default of
+    /// Samples `function` over `domain` (data values); of labels, the domain is [`domain_of_labels`]. `voxel` is the shortest spacing of the volume in millimetres, the default of
     /// `opacity_length`.
     pub fn new(
         function: &TransferFunction,
@@ -39,6 +41,9 @@ impl LookupTable {
     ) -> Self {
         let length = f64::from(function.opacity_length.unwrap_or(voxel));
         let per_unit = f64::from(millimetres_per_unit) / length;
+        if let Some(domain) = domain_of_labels(&function.labels) {
+            return Self::of_labels(&function.labels, domain, per_unit);
+        }
         let points = function.points_in_force();
         let last = f64::from(function.entries.max(2) - 1);
         let entries = (0..function.entries.max(2)).map(|index| {
@@ -50,7 +55,19 @@ impl LookupTable {
         let entries = entries.collect();
         let mut layers: Vec<Layer> = function.iso.iter().filter_map(|iso| layer(iso, domain, last)).collect();
         layers.sort_by(|a, b| a.position.total_cmp(&b.position));
-        Self { entries, layers }
+        Self { entries, layers, is_exact: false }
+    }
+
+    /// An entry for each whole number of a domain.
+    fn of_labels(labels: &[LabelColour], (low, high): (f32, f32), per_unit: f64) -> Self {
+        let mut entries = vec![Vec4::ZERO; (high - low) as usize + 1];
+        for label in labels {
+            let depth = depth_of(f64::from(label.opacity)) * per_unit;
+            if let Some(entry) = entries.get_mut((label.value as f32 - low) as usize) {
+                *entry = label.color.extend(depth.min(f64::from(f32::MAX)) as f32);
+            }
+        }
+        Self { entries, layers: Vec::new(), is_exact: true }
     }
 
     /// Place of a data value in the table, in entries, not clamped.
@@ -180,7 +197,7 @@ impl Held {
 /// Colour and optical depth over `opacity_length` at a position 0..1 that has the data value `value`.
 fn classify(points: &[ControlPoint], iso: &[IsoValue], position: f64, value: f64) -> (DVec3, f64) {
     let (mut colour, opacity) = interpolate(points, position);
-    let mut depth = -(-opacity.clamp(0.0, MAX_OPACITY)).ln_1p();
+    let mut depth = depth_of(opacity);
     // Extinctions add; the colour is that of the mixture.
     let layers = iso.iter().filter(|layer| layer.width > 0.0).map(|layer| {
         (
@@ -193,6 +210,24 @@ fn classify(points: &[ControlPoint], iso: &[IsoValue], position: f64, value: f64
         depth += layer_depth;
     }
     (colour, depth)
+}
+
+/// Optical depth of a slab that absorbs a share of the light.
+fn depth_of(opacity: f64) -> f64 {
+    -(-opacity.clamp(0.0, MAX_OPACITY)).ln_1p()
+}
+
+/// The values at the ends of the table of labels, one beyond the least and the greatest, so that whatever lies outside is clear; `None` where
+/// there is no label.
+pub fn domain_of_labels(labels: &[LabelColour]) -> Option<(f32, f32)> {
+    let least = labels.iter().map(|label| label.value).min()?;
+    let greatest = labels.iter().map(|label| label.value).max()?;
+    Some(domain_around(least, greatest))
+}
+
+/// The same for labels from one value to another.
+pub fn domain_around(least: i32, greatest: i32) -> (f32, f32) {
+    ((least - 1) as f32, (greatest + 1) as f32)
 }
 
 /// 1 at 0, a half at a distance of half the width, 0 beyond the width.
@@ -290,6 +325,25 @@ mod tests {
         let flat = passed.depth(2.5, 2.5, 3.0);
         assert!((flat - 1.5 * f64::from(table.entries[2].w + table.entries[3].w)).abs() < 1e-6);
         assert!((passed.depth(-7.0, 1.0, 1.0) - passed.depth(0.0, 1.0, 1.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn each_label_has_an_entry_of_its_own() {
+        let label = |value, opacity| LabelColour { value, opacity, color: Vec3::X, ..Default::default() };
+        let labels = vec![label(65_535, 0.5), label(-3, 1.0), label(2, 0.0)];
+        let function = TransferFunction { labels, ..Default::default() };
+        let domain = domain_of_labels(&function.labels).unwrap_or_default();
+        let table = LookupTable::new(&function, domain, 2.0, 10.0);
+        assert!(table.is_exact && domain == (-4.0, 65_536.0));
+        for value in [-4, -3, -2, 2, 3, 65_534, 65_535, 65_536] {
+            let place = table.position(domain, value as f32);
+            assert_eq!(place, f64::from(value) + 4.0);
+            let held = table.holds_something().between(place, place);
+            assert_eq!(held, [-3, 65_535].contains(&value), "{value}");
+        }
+        assert!((table.entries[65_539].w - std::f32::consts::LN_2 * 5.0).abs() < 1e-5);
+        assert_eq!(table.entries[6].truncate(), Vec3::X);
+        assert_eq!(domain_of_labels(&[]), None);
     }
 
     #[test]

@@ -27,8 +27,10 @@ pub(crate) struct Classified {
     pub extent: Vec<Vec3>,
     /// Distance of each brick from the nearest that holds something, in bricks, at most 255; 0 is such a brick.
     pub distances: Vec<u8>,
-    /// When the function is applied.
+    /// When the function is applied; where nothing lies between voxels, `Post` is as good as any.
     pub classification: Classification,
+    /// Whether a place has the value of the nearest voxel.
+    pub is_nearest: bool,
     /// The table's extinction and layers added up from its lower end: the optical depth of segments of any length.
     pub cumulative: Cumulative,
     /// Which of all there have been.
@@ -58,7 +60,8 @@ impl Classified {
         let next = Versions { extinction: next, table: next };
         let versions = former.map_or(next, |former| {
             let same_extinction = self.cumulative == former.cumulative
-                && (self.domain, &self.distances) == (former.domain, &former.distances);
+                && (self.domain, self.is_nearest) == (former.domain, former.is_nearest)
+                && self.distances == former.distances;
             let same_table = same_extinction && self.table == former.table;
             Versions {
                 extinction: if same_extinction { former.versions.extinction } else { next.extinction },
@@ -69,18 +72,19 @@ impl Classified {
     }
 }
 
-type Classifiable<'a> = (Entity, &'a TransferFunction, Ref<'a, LoadedVolume>, Option<&'a Classified>);
+type Classifiable<'a> =
+    (Entity, &'a TransferFunction, &'a Volume, Ref<'a, LoadedVolume>, Option<&'a Classified>);
 
 pub(crate) fn classify(
     mut commands: Commands,
-    volumes: Query<Classifiable, With<Volume>>,
+    volumes: Query<Classifiable>,
     settings: Res<SceneSettings>,
     (mut unit, mut version): (Local<f32>, Local<u64>),
     mut report: ResMut<Report>,
 ) {
     let has_other_unit =
         std::mem::replace(&mut *unit, settings.millimetres_per_unit) != settings.millimetres_per_unit;
-    for (entity, function, volume, former) in &volumes {
+    for (entity, function, component, volume, former) in &volumes {
         let is_same = former.is_some_and(|former| former.function == *function);
         if is_same && !volume.is_changed() && !has_other_unit {
             continue;
@@ -88,6 +92,7 @@ pub(crate) fn classify(
         *version += 1;
         let domain = volume.domain(function);
         let in_force = volume.function_in_force(function);
+        let is_nearest = volume.is_nearest(component, &in_force);
         let voxel = volume.data.spacing.min_element();
         let table = LookupTable::new(&in_force, domain, voxel, settings.millimetres_per_unit);
         let bricks = &volume.data.bricks;
@@ -108,7 +113,8 @@ pub(crate) fn classify(
             bricks: bricks.size,
             extent,
             distances,
-            classification: function.classification,
+            classification: if is_nearest { Classification::Post } else { function.classification },
+            is_nearest,
             versions: Versions::default(),
             function: function.clone(),
         };

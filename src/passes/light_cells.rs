@@ -144,7 +144,7 @@ fn make(
         wgpu::BindingResource::TextureView(&texture.view),
     ]);
     let bindings = [binding::UNIFORM, binding::grid_out(wgpu::TextureFormat::Rgba32Float)];
-    let reading = Reading::of(texture.format);
+    let reading = Reading::of(texture.format, classified);
     let kernel = averager.kernels.get(gpu, reading, ("light_cells", "average"), &bindings, report)?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     kernel.run(gpu, &mut encoder, &resources, Invocations::Count(cells.element_product()), timing);

@@ -235,7 +235,7 @@ pub(crate) fn make(
         wgpu::BindingResource::TextureView(&texture.view),
     ]);
     let bindings = [binding::UNIFORM, binding::GRID_OUT, binding::UNIFORM];
-    let reading = Reading::of(texture.format);
+    let reading = Reading::of(texture.format, classified);
     let kernel = sweeper.kernels.get(gpu, reading, ("light_volume", "sweep"), &bindings, report)?;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     kernel.run(gpu, &mut encoder, &resources, Invocations::Count(size.x * size.y), timing);

@@ -4,19 +4,21 @@
 //! extinction and extinction as shares of the greatest. Runs for a volume when its data or its function changes.
 
 use super::classify::Classified;
+use super::light_volume::lighting_in_force;
+use super::raycast::table_texture;
 use super::upload::VolumeTexture;
 use super::voxels::{self, Reading};
-use crate::components::Classification;
+use crate::components::{Classification, SceneSettings, Shading, VolumeLighting};
 use crate::failure::Failure;
 use crate::gpu::{
-    Gpu, GpuError, Invocations, Kernel, KernelDescriptor, PassTimer, Texels, binding, texture_of,
-    uniform_buffer,
+    Gpu, GpuError, Invocations, Kernel, KernelDescriptor, PassTimer, Texels, binding, uniform_buffer,
 };
 use crate::loading::LoadedVolume;
 use crate::scene::{Problem, Problems};
+use crate::view::Comparison;
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
-use glam::{UVec2, Vec4};
+use glam::Vec4;
 
 /// The kernels, one for each kind of texels, from when it is first needed.
 #[derive(Resource, Default, Debug)]
@@ -36,15 +38,27 @@ mirror! {
     pub(crate) struct VoxelsUniform as "Voxels" {
         lookup_scale: f32,
         lookup_offset: f32,
+        entries: u32,
+        is_exact: u32,
         greatest_colour: f32,
         greatest_extinction: f32,
     }
 }
 
+type Preclassifiable<'a> = (
+    Entity,
+    Ref<'a, Classified>,
+    Ref<'a, VolumeTexture>,
+    &'a LoadedVolume,
+    Has<ClassifiedVoxels>,
+    &'a VolumeLighting,
+    Option<&'a Shading>,
+);
+
 pub(crate) fn preclassify(
     mut commands: Commands,
-    gpu: Res<Gpu>,
-    volumes: Query<(Entity, Ref<Classified>, Ref<VolumeTexture>, &LoadedVolume, Has<ClassifiedVoxels>)>,
+    (gpu, settings, comparison): (Res<Gpu>, Res<SceneSettings>, Res<Comparison>),
+    volumes: Query<Preclassifiable>,
     orphans: Query<Entity, (With<ClassifiedVoxels>, Without<LoadedVolume>)>,
     mut kernels: ResMut<Preclassifier>,
     mut timer: Option<ResMut<PassTimer>>,
@@ -54,11 +68,19 @@ pub(crate) fn preclassify(
         commands.entity(entity).remove::<ClassifiedVoxels>();
     }
     let (mut bytes, mut changed) = (0, !orphans.is_empty());
-    for (entity, classified, texture, loaded, has) in &volumes {
+    for (entity, classified, texture, loaded, has, lighting, shading) in &volumes {
         if failure.stands_on(entity) {
             continue;
         }
-        if classified.classification != Classification::Pre {
+        let lighting = lighting_in_force(lighting, shading, &settings);
+        let has_normals =
+            lighting.takes_normals() || comparison.0.is_some() && lighting.local().takes_normals();
+        let is_wanted = match classified.is_nearest {
+            // To smooth what is there, for normals.
+            true => has_normals,
+            false => classified.classification == Classification::Pre,
+        };
+        if !is_wanted {
             if has {
                 commands.entity(entity).remove::<ClassifiedVoxels>();
                 changed = true;
@@ -82,7 +104,7 @@ pub(crate) fn preclassify(
         };
         let timing = timer.as_mut().and_then(|timer| timer.time_compute("preclassify"));
         let made = || {
-            let kernel = ready(&gpu, &mut kernels, Reading::of(texture.format), &mut report)?;
+            let kernel = ready(&gpu, &mut kernels, Reading::of(texture.format, &classified), &mut report)?;
             Ok(classified_voxels(&gpu, kernel, &classified, &texture, loaded.data.size, timing))
         };
         match gpu.attempt("preclassify", made) {
@@ -146,13 +168,13 @@ fn classified_voxels(
     let uniform = VoxelsUniform {
         lookup_scale,
         lookup_offset,
+        entries: entries.len() as u32,
+        is_exact: u32::from(classified.table.is_exact),
         greatest_colour: greatest[0],
         greatest_extinction: greatest[1],
     };
     let uniform = uniform_buffer(gpu, "voxels", &uniform);
-    let size = UVec2::new(entries.len() as u32, 1);
-    let format = wgpu::TextureFormat::Rgba32Float;
-    let table = texture_of(gpu, "lookup table", size, format, bytemuck::cast_slice(entries));
+    let table = table_texture(gpu, entries);
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("classified voxels"),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: depth },

@@ -8,6 +8,7 @@ mod instance;
 mod pipeline;
 mod tables;
 
+use super::classification::Manner;
 use super::classify::{Classified, classify};
 use super::eye_light::EyeLight;
 use super::light_budget::KeptLights;
@@ -41,7 +42,7 @@ pub(crate) use instance::VolumeInstance;
 use instance::{instances, lit};
 pub(crate) use pipeline::{Scattered, classifications_module, scattered_module};
 use pipeline::{Variant, make};
-pub(crate) use tables::BRICK_ROW;
+pub(crate) use tables::{BRICK_ROW, TABLE_ROW, table_texture};
 use tables::{Tables, tables, view_of};
 
 /// Casts rays through volumes.
@@ -165,8 +166,7 @@ pub(crate) fn textures_for_volumes(gpu: &Gpu) -> usize {
 
 /// What is told where volumes and their light volumes are more textures than can be bound.
 fn too_many(volumes: &[VolumeData], limit: usize) -> Option<Problem> {
-    let classified =
-        volumes.iter().filter(|volume| classification_of(volume) != Classification::Post).count();
+    let classified = volumes.iter().filter(|volume| manner_of(volume).has_texture()).count();
     let scattered: usize = volumes.iter().map(|volume| scattered_of(volume).textures()).sum();
     let light = light_volumes(volumes).len() + shadows(volumes).iter().flatten().count() + scattered;
     if volumes.len() + light + classified <= limit {
@@ -202,6 +202,13 @@ fn classification_of(volume: &VolumeData) -> Classification {
     }
 }
 
+/// How it is read.
+fn manner_of(volume: &VolumeData) -> Manner {
+    let classification = classification_of(volume);
+    let has_surfaces = volume.classified.is_nearest && volume.voxels.is_some();
+    Manner { classification, is_exact: volume.classified.table.is_exact, has_surfaces }
+}
+
 /// Makes what is missing or stale: pipeline, tables, target.
 fn prepare(
     gpu: &Gpu,
@@ -212,12 +219,13 @@ fn prepare(
     caster: &mut RayCaster,
     report: &mut Report,
 ) -> Result<(), GpuError> {
-    let readings = volumes.iter().map(|volume| Reading::of(volume.texture.format)).collect();
+    let readings =
+        volumes.iter().map(|volume| Reading::of(volume.texture.format, &volume.classified)).collect();
     let light_volumes = shadows(volumes).iter().map(Option::is_some).collect();
     let scattered = volumes.iter().map(scattered_of).collect();
-    let classifications = volumes.iter().map(classification_of).collect();
+    let manners = volumes.iter().map(manner_of).collect();
     let light_capacity = frame.light_capacity;
-    let variant = Variant { readings, classifications, light_capacity, kinds, light_volumes, scattered };
+    let variant = Variant { readings, manners, light_capacity, kinds, light_volumes, scattered };
     if caster.draw.as_ref().is_none_or(|(made_for, _)| *made_for != variant) {
         caster.draw = Some((variant.clone(), make(gpu, &variant)?));
         report.pipelines.push("raycast");
@@ -308,10 +316,10 @@ fn draw(
     let shadows: Vec<&VolumeShadow> = shadows(volumes).into_iter().flatten().collect();
     let shadow_places = volume_shadow::places(gpu, &shadows);
     resources.extend(volume_shadow::resources(&shadows, &shadow_places));
-    let classified = volumes.iter().filter_map(|volume| match classification_of(volume) {
-        Classification::Post => None,
-        Classification::Pre => volume.voxels.map(|voxels| &voxels.view),
+    let textured = volumes.iter().filter(|volume| manner_of(volume).has_texture());
+    let classified = textured.filter_map(|volume| match classification_of(volume) {
         Classification::PreIntegrated => volume.pairs.map(|pairs| &pairs.view),
+        _ => volume.voxels.map(|voxels| &voxels.view),
     });
     resources.extend(classified.map(wgpu::BindingResource::TextureView));
     let scattered = volumes.iter().filter_map(|volume| Some((volume.summed?, volume.eye_light)));

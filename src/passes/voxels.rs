@@ -1,6 +1,7 @@
 //! How shaders read volumes: the WGSL module `volumes`.
 
-use super::raycast::BRICK_ROW;
+use super::classify::Classified;
+use super::raycast::{BRICK_ROW, TABLE_ROW};
 use crate::gpu::{Filtering, Texels, VolumeFormat, binding};
 use crate::sources::BrickRanges;
 use std::fmt::Write;
@@ -12,12 +13,14 @@ pub(crate) struct Reading {
     pub filtering: Filtering,
     /// What its texels are.
     pub texels: Texels,
+    /// Whether nothing is interpolated.
+    pub is_nearest: bool,
 }
 
 impl Reading {
-    /// Of a texture of some format.
-    pub fn of(format: VolumeFormat) -> Self {
-        Self { filtering: format.filtering, texels: format.texels }
+    /// Of a texture of some format, by what was made of it.
+    pub fn of(format: VolumeFormat, classified: &Classified) -> Self {
+        Self { filtering: format.filtering, texels: format.texels, is_nearest: classified.is_nearest }
     }
 
     /// How the texture is bound.
@@ -36,6 +39,7 @@ impl Reading {
     /// An expression for the texel at `place`, and what it needs.
     fn texel(self, index: usize) -> (String, String) {
         match self.filtering {
+            _ if self.is_nearest => (format!("nearest_{index}(place)"), one_load(index)),
             Filtering::Sampler => {
                 (format!("textureSampleLevel(volume_{index}, linear_sampler, place, 0.0)"), String::new())
             }
@@ -44,14 +48,15 @@ impl Reading {
     }
 }
 
-/// The WGSL module `volumes`: one texture binding a volume, and `voxel_at(volume, place)` that interpolates in it.
+/// The WGSL module `volumes`: one texture binding a volume, and `voxel_at(volume, place)` that interpolates in it, or does not.
 pub(crate) fn module(readings: &[Reading], first_binding: usize) -> String {
     let brick = BrickRanges::BRICK;
     let count = readings.len();
     let any_partial = readings.iter().any(|reading| reading.texels != Texels::Values);
+    let any_nearest = readings.iter().any(|reading| reading.is_nearest);
     let mut text = format!(
         "#import voxel\nconst VOLUMES = {count}u;\nconst BRICK_ROW = {BRICK_ROW}u;\nconst BRICK = {brick}.0;\n\
-         const ANY_PARTIAL = {any_partial};\n"
+         const TABLE_ROW = {TABLE_ROW}u;\nconst ANY_PARTIAL = {any_partial};\nconst ANY_NEAREST = {any_nearest};\n"
     );
     let mut cases = String::new();
     for (index, reading) in readings.iter().enumerate() {
@@ -76,7 +81,20 @@ pub(crate) fn texels_module(reading: Reading) -> (&'static str, String) {
     let meaning = reading.meaning();
     (
         "texels",
-        format!("#import voxel\nfn voxel_of(texel: vec4f) -> Voxel {{\n    return {meaning}(texel);\n}}\n"),
+        format!(
+            "#import voxel\nconst TABLE_ROW = {TABLE_ROW}u;\nfn voxel_of(texel: vec4f) -> Voxel {{\n    return {meaning}(texel);\n}}\n"
+        ),
+    )
+}
+
+/// The texel that a place is in.
+fn one_load(index: usize) -> String {
+    format!(
+        "fn nearest_{index}(place: vec3f) -> vec4f {{
+    let size = vec3i(textureDimensions(volume_{index}));
+    return textureLoad(volume_{index}, clamp(vec3i(floor(place * vec3f(size))), vec3i(0), size - 1), 0);
+}}
+"
     )
 }
 

@@ -2,6 +2,7 @@
 
 mod bricks;
 mod core_range;
+mod evidence;
 mod frame;
 mod histogram;
 mod labels;
@@ -212,12 +213,14 @@ pub struct VolumeData {
     pub window: Option<(f32, f32)>,
     /// What the values mean, where the file says that they are labels.
     pub labels: Option<Labels>,
+    /// Whether the samples themselves look like labels: few whole numbers in pieces that are constant.
+    pub looks_labelled: bool,
     /// What a person should know about how the file was read; empty where there is nothing to say.
     pub notes: Vec<String>,
 }
 
 impl VolumeData {
-    /// A volume of these samples; looks at each twice, to find their ranges and to count their values.
+    /// A volume of these samples; looks at each a few times, to find their ranges and to count their values.
     ///
     /// # Errors
     ///
@@ -234,6 +237,7 @@ impl VolumeData {
         let core_range = core_range::core_range(&samples, range);
         let slices = slices::slices_of(&samples, size);
         let histogram = Histogram::of(&samples, core_range);
+        let looks_labelled = evidence::looks_like_labels(&samples, size);
         Ok(Self {
             size,
             spacing,
@@ -247,8 +251,14 @@ impl VolumeData {
             frame: Frame::centred(size, spacing),
             window: None,
             labels: None,
+            looks_labelled,
             notes: Vec::new(),
         })
+    }
+
+    /// Whether its values name what is there, by what the file says or by what they look like.
+    pub fn is_label_map(&self) -> bool {
+        self.labels.is_some() || self.looks_labelled
     }
 
     /// The sample of voxel (x, y, z), unscaled; `None` outside.

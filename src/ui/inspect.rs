@@ -93,14 +93,17 @@ fn transfer_function(
         presets,
     };
     let editor = editors.of.entry(entity).or_default();
-    if function.preset.is_none() {
+    // What a preset makes, or labels that nobody wrote down, is shown; whoever changes it has a function of their own from then on.
+    let in_force = match volume {
+        Some(volume) => volume.function_in_force(function),
+        None => function.in_force(None, data.domain),
+    };
+    if in_force == *function {
         return editor.show(ui, name, function, &data);
     }
-    // What a preset makes is shown; whoever changes it has points of their own from then on.
-    let mut own = function.in_force(data.histogram, data.domain);
-    let edits = editor.show(ui, name, &own, &data);
+    let edits = editor.show(ui, name, &in_force, &data);
     let Some(last) = edits.last() else { return edits };
-    let finished = last.finished;
+    let (mut own, finished) = (in_force, last.finished);
     match edits.iter().try_for_each(|edited| edited.apply(&mut own)) {
         Ok(()) => vec![Edited { path: String::new(), value: Box::new(own), finished }],
         Err(_) => edits,

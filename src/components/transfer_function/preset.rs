@@ -217,7 +217,7 @@ impl Preset {
                 Vec::new(),
             ),
         };
-        TransferFunction { preset: None, points, iso, ..function.clone() }
+        TransferFunction { preset: None, points, iso, labels: Vec::new(), ..function.clone() }
     }
 }
 

@@ -4,7 +4,7 @@ use crate::gpu::{Gpu, GpuError, Kernel, KernelDescriptor, binding, texture_of, u
 use crate::loading::LoadedVolume;
 use crate::mirrors::mirror;
 use crate::passes::classify::Classified;
-use crate::passes::raycast::BRICK_ROW;
+use crate::passes::raycast::{BRICK_ROW, table_texture};
 use crate::passes::upload::VolumeTexture;
 use crate::passes::voxels::{self, Reading};
 use crate::report::Report;
@@ -17,6 +17,7 @@ mirror! {
         lookup_scale: f32,
         lookup_offset: f32,
         last: f32,
+        is_exact: u32,
         size: Vec3,
         bricks: UVec3,
     }
@@ -79,12 +80,11 @@ impl Medium {
             lookup_scale,
             lookup_offset,
             last: (entries.len() - 1) as f32,
+            is_exact: u32::from(classified.table.is_exact),
             size: UVec3::from(loaded.data.size).as_vec3(),
             bricks: UVec3::from(classified.bricks),
         };
-        let table_size = UVec2::new(entries.len() as u32, 1);
-        let format = wgpu::TextureFormat::Rgba32Float;
-        let table = texture_of(gpu, "lookup table", table_size, format, bytemuck::cast_slice(entries));
+        let table = table_texture(gpu, bytemuck::cast_slice(entries));
         Self {
             uniform: uniform_buffer(gpu, "classified", &uniform),
             table: table.create_view(&Default::default()),

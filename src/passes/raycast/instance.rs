@@ -20,6 +20,8 @@ mirror! {
         lookup_scale: f32,
         lookup_offset: f32,
         table_entries: u32,
+        table_row: u32,
+        is_exact: u32,
         bricks_start: u32,
         bricks: UVec3,
         least_transmittance: f32,
@@ -47,7 +49,7 @@ pub fn instances(
     settings: &SceneSettings,
     volumes: &[VolumeData],
     shading: Shading,
-    starts: &[u32],
+    starts: &[[u32; 2]],
 ) -> Vec<VolumeInstance> {
     let mut first_sweep = 0;
     let mut all = Vec::new();
@@ -70,7 +72,7 @@ fn instance(
     volume: &VolumeData,
     scene_from_texture: DAffine3,
     lit: Lit,
-    bricks_start: u32,
+    [bricks_start, table_row]: [u32; 2],
     first_sweep: u32,
 ) -> VolumeInstance {
     let VolumeData { loaded, classified, texture, ray_cast, voxels, summed, .. } = volume;
@@ -92,6 +94,8 @@ fn instance(
         lookup_scale,
         lookup_offset,
         table_entries: classified.table.entries.len() as u32,
+        table_row,
+        is_exact: u32::from(classified.table.is_exact),
         bricks_start,
         bricks: UVec3::from(classified.bricks),
         least_transmittance: 1.0 - ray_cast.early_termination,

@@ -1,8 +1,8 @@
 //! The ray caster's pipeline, and the modules of its shader that are made for what is in a scene.
 
 use super::FORMAT;
-use crate::components::Classification;
 use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, binding};
+use crate::passes::classification::Manner;
 use crate::passes::light_volume::lookup;
 use crate::passes::lighting::Kinds;
 use crate::passes::voxels::{self, Reading};
@@ -16,7 +16,7 @@ pub struct Variant {
     /// One for each volume.
     pub readings: Vec<Reading>,
     /// One for each volume.
-    pub classifications: Vec<Classification>,
+    pub manners: Vec<Manner>,
     pub light_capacity: usize,
     /// How volumes are lit, which costs more than the rest together.
     pub kinds: Kinds,
@@ -48,7 +48,7 @@ pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
     let first = FIXED_BINDINGS + variant.readings.len();
     let first_shadow = first + light_volumes.len();
     let first_classified = first_shadow + shadows.len();
-    let classified = classification::bindings(&variant.classifications);
+    let classified = classification::bindings(&variant.manners);
     let first_scattered = first_classified + classified.len();
     let bindings: Vec<_> = fixed
         .into_iter()
@@ -65,7 +65,7 @@ pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
             generated: &[
                 ("volumes", voxels::module(&variant.readings, FIXED_BINDINGS)),
                 variant.kinds.module(),
-                classifications_module(&variant.classifications, first_classified),
+                classifications_module(&variant.manners, first_classified),
                 lights_module(variant.light_capacity),
                 lookup::light_volumes_module(variant.light_volumes.len(), lookup::filtering(gpu), first),
                 volume_shadow::module(&variant.light_volumes, first_shadow),
@@ -81,11 +81,8 @@ pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
 }
 
 /// The WGSL module `classifications`, whose textures are bound behind all others.
-pub(crate) fn classifications_module(
-    classifications: &[Classification],
-    first_binding: usize,
-) -> (&'static str, String) {
-    ("classifications", classification::module(classifications, first_binding))
+pub(crate) fn classifications_module(manners: &[Manner], first_binding: usize) -> (&'static str, String) {
+    ("classifications", classification::module(manners, first_binding))
 }
 
 /// What is looked up of light that was scattered before.

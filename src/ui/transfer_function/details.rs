@@ -80,7 +80,14 @@ impl TransferFunctionEditor {
             Some(Selected::Point(index)) => point(ui, shown, plot, index),
             Some(Selected::Iso(index)) => iso(ui, shown, plot, index),
             None => {
-                let hint = "Click on the curve to add a control point, or choose one to change it.";
+                let labels = shown.function.labels.len();
+                let hint = match labels {
+                    0 => "Click on the curve to add a control point, or choose one to change it.".to_owned(),
+                    1 => "One label, and no curve. A control point or a preset takes its place.".to_owned(),
+                    _ => format!(
+                        "{labels} labels, and no curve. A control point or a preset takes their place."
+                    ),
+                };
                 ui.label(RichText::new(hint).weak().small());
             }
         }

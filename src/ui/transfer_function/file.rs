@@ -1,6 +1,6 @@
 //! Transfer functions in files of their own.
 
-use crate::components::{Auto, Classification, TransferFunction};
+use crate::components::{Auto, Classification, LabelColour, TransferFunction};
 use crate::scene::{Problem, read_component};
 use crate::whole_file::Staged;
 use bevy_reflect::TypeRegistry;
@@ -84,7 +84,13 @@ pub(super) fn in_ron(function: &TransferFunction) -> String {
         let (value, width, absorption) = (iso.value, iso.width, iso.absorption);
         format!("(value: {value:?}, width: {width:?}, color: {}, absorption: {absorption:?})", rgb(iso.color))
     });
-    for (name, lines) in [("points", points.collect::<Vec<_>>()), ("iso", iso.collect())] {
+    let labels = function.labels.iter().map(|label| {
+        let LabelColour { value, color, opacity, name } = label;
+        format!("(value: {value}, color: {}, opacity: {opacity:?}, name: {name:?})", rgb(*color))
+    });
+    let lists =
+        [("points", points.collect::<Vec<_>>()), ("iso", iso.collect()), ("labels", labels.collect())];
+    for (name, lines) in lists {
         if !lines.is_empty() {
             field(name, &format!("[\n        {},\n    ]", lines.join(",\n        ")));
         }
@@ -134,11 +140,20 @@ mod tests {
             domain: Auto::Value(Vec2::new(-1e6, 1e-3)),
             points,
             iso,
+            labels: Vec::new(),
             entries: 256,
             classification: Classification::PreIntegrated,
             opacity_length: Auto::Value(0.25),
         };
-        for function in [TransferFunction::default(), whole] {
+        let label = |value, name: &str| LabelColour {
+            value,
+            color: Vec3::new(0.1, 1e-7, 2.0),
+            opacity: 0.25,
+            name: name.into(),
+        };
+        let labels = vec![label(-7, ""), label(65_535, "a \"name\"\nof two \\ lines, ü")];
+        let labelled = TransferFunction { labels, ..Default::default() };
+        for function in [TransferFunction::default(), whole, labelled] {
             write_transfer_function(&path, &function).unwrap();
             assert_eq!(read_transfer_function(&path, &registry()).unwrap(), function);
         }

@@ -179,7 +179,8 @@ impl TransferFunctionEditor {
         }
         response.request_focus();
         let Some(at) = response.interact_pointer_pos() else { return };
-        if self.is_on_curve(shown, plot, at) {
+        // Where there are labels a curve takes their place, which no click may do unasked.
+        if shown.function.labels.is_empty() && self.is_on_curve(shown, plot, at) {
             self.add_point(shown, super::super::number::round_to(plot.value_at(at.x), plot.grain()));
         } else {
             self.selected = None;

@@ -50,7 +50,12 @@ impl Shown<'_> {
         let mut points = self.points.clone();
         let index = points.partition_point(|other| other.0 <= point.0);
         points.insert(index, point);
-        self.put("points".into(), Box::new(points), true);
+        if self.function.labels.is_empty() {
+            self.put("points".into(), Box::new(points), true);
+        } else {
+            // A curve and labels exclude each other.
+            self.put_all(TransferFunction { points, labels: Vec::new(), ..self.function.clone() });
+        }
         index
     }
 
@@ -60,8 +65,9 @@ impl Shown<'_> {
         all.push(iso);
         let index = all.len() - 1;
         if self.function.points.is_empty() && self.function.iso.is_empty() {
-            // With an iso value the ramp that nothing stands for would be gone.
-            let whole = TransferFunction { points: self.points.clone(), iso: all, ..self.function.clone() };
+            // With an iso value the ramp that nothing stands for would be gone, and labels go.
+            let (points, labels) = (self.points.clone(), Vec::new());
+            let whole = TransferFunction { points, iso: all, labels, ..self.function.clone() };
             self.put_all(whole);
         } else {
             self.put("iso".into(), Box::new(all), true);
