@@ -14,7 +14,7 @@ fn classified_at(place: vec3f) -> vec4f {
     let at = entry_of(voxel);
     let below = clamp(floor(at), 0.0, classified.last - 1.0);
     let found = mix(entry(u32(below)), entry(u32(below) + 1u), at - below);
-    return vec4f(found.rgb, found.a * voxel.shown);
+    return vec4f(found.rgb * voxel.tint, found.a * voxel.shown);
 }
 
 struct Cells {

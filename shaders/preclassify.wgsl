@@ -42,6 +42,6 @@ fn preclassify(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups
     let below = min(floor(place), last - 1.0);
     let found = mix(entry(u32(below)), entry(u32(below) + 1u), place - below);
     let extinction = here.shown * found.a / voxels.greatest_extinction;
-    let shares = vec4f(found.rgb / voxels.greatest_colour * extinction, extinction);
+    let shares = vec4f(found.rgb * here.tint / voxels.greatest_colour * extinction, extinction);
     textureStore(classified, voxel, shares);
 }

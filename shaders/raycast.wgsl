@@ -326,7 +326,21 @@ fn found_at(index: u32, volume: VolumeInstance, lookup: Lookup, classification: 
     }
     let voxel = voxel_at(index, at);
     let found = look_up(lookup, voxel.texel);
-    return Found(found.rgb, found.a * voxel.shown);
+    var colour = found.rgb;
+    if ANY_TINTED {
+        colour *= voxel.tint;
+    }
+    return Found(colour, found.a * voxel.shown);
+}
+
+// The colour of a segment that goes through colours.
+fn tinted(colour: vec3f, front: Voxel, back: Voxel) -> vec3f {
+    if ANY_TINTED {
+        // What is clear has none.
+        let ends = front.tint * front.shown + back.tint * back.shown;
+        return colour * ends / max(front.shown + back.shown, 1e-30);
+    }
+    return colour;
 }
 
 // Samples that are lit together: what they absorb, and sums of what they are by what each shows.
@@ -448,7 +462,7 @@ fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
                             at = surface_in(index, lookup, front, back);
                         }
                         let along = done * volume.step + at * length;
-                        together = joined(together, found.rgb, found.a, along);
+                        together = joined(together, tinted(found.rgb, front, back), found.a, along);
                     } else {
                         let along = done * volume.step + 0.5 * length;
                         let found = found_at(index, volume, lookup, classification, start + direction * along);

@@ -88,13 +88,22 @@ impl LoadedVolume {
     }
 
     /// The function that a volume is drawn with: the one written, with the points of its preset, if it has one; of a label map without any, a
-    /// colour for each label.
+    /// colour for each label; white where the data are colours and the function says none.
     pub fn function_in_force(&self, function: &TransferFunction) -> TransferFunction {
         match self.default_labels(function) {
             Some(values) => {
                 TransferFunction { preset: None, labels: self.colours_of(values), ..function.clone() }
             }
-            None => function.in_force(Some(&self.data.histogram), self.domain(function)),
+            None => {
+                let in_force = function.in_force(Some(&self.data.histogram), self.domain(function));
+                if self.data.samples.format() == sources::SampleFormat::Rgba8
+                    && function.colours_are_unwritten()
+                {
+                    in_force.in_white()
+                } else {
+                    in_force
+                }
+            }
         }
     }
 }

@@ -85,7 +85,7 @@ pub fn all() -> Vec<Mirror> {
 pub fn generated_modules() -> Vec<(&'static str, String)> {
     use crate::components::Classification::{Pre, PreIntegrated};
     use crate::gpu::Filtering::{Sampler, Shader};
-    use crate::gpu::Texels::{Masked, Values};
+    use crate::gpu::Texels::{Colours, Masked, Values};
     use crate::passes::classification::Manner;
     use crate::passes::raycast::Scattered::{Nothing, TowardsEye};
     use crate::passes::voxels::{self, Reading};
@@ -96,13 +96,14 @@ pub fn generated_modules() -> Vec<(&'static str, String)> {
     ];
     let plain = Reading { filtering: Sampler, texels: Values, is_nearest: false };
     let nearest = Reading { is_nearest: true, ..plain };
+    let coloured = Reading { texels: Colours, ..plain };
     let masked = Reading { filtering: Shader, texels: Masked, is_nearest: false };
     let count = passes::light_volume::through::VeilCount { volumes: 2, lights: 1 };
     // Behind the bindings of every shader that has these modules.
     let (volumes, first, classified) = (50, 18, 32);
     let [light_volumes, veils] = passes::light_volume::through::modules(count, Sampler, first);
     vec![
-        ("volumes", voxels::module(&[plain, masked, nearest], volumes)),
+        ("volumes", voxels::module(&[plain, masked, nearest, coloured], volumes)),
         voxels::texels_module(masked),
         passes::lighting::Kinds::all().module(),
         passes::raycast::classifications_module(&manners, classified),

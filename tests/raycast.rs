@@ -1,6 +1,8 @@
 //! Volumes against values that are known exactly, through scene file, reader, upload and shader.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+#[path = "raycast/colours.rs"]
+mod colours;
 #[path = "raycast/labels.rs"]
 mod labels;
 #[path = "raycast/masked.rs"]

@@ -55,6 +55,12 @@ use glam::{Vec2, Vec3};
 /// part, and voxels are not mixed whatever `Volume` and `classification` say. A label map (see [`Volume`](super::Volume)) whose function has none of
 /// `domain`, `points`, `iso`, `labels` and no preset but `Object` has the colours of its file, where there are any, and else a palette by value; label 0 is clear.
 ///
+/// # Colours
+///
+/// Where the data are colours (`Rgba8`), the function is applied to their luminance, 0 to 255, and says their opacity alone: a place shows the colour of
+/// the data, and its extinction is that of the function times the opacity of the data. Colours of `points` and `iso` that are written multiply those of the
+/// data; without any, and with a preset, they are white. With `PreIntegrated` the colour of a segment is the mean of its ends.
+///
 /// # Classification
 ///
 /// A ray cuts a volume into segments. They differ in what is made of one:
@@ -149,6 +155,21 @@ impl TransferFunction {
             && self.points.is_empty()
             && self.iso.is_empty()
             && self.labels.is_empty()
+    }
+
+    /// Whether it says no colour itself, be it because a preset does, which suits greys.
+    pub fn colours_are_unwritten(&self) -> bool {
+        self.preset.is_some() || (self.points.is_empty() && self.iso.is_empty() && self.labels.is_empty())
+    }
+
+    /// The same opacities, in white.
+    pub fn in_white(&self) -> Self {
+        let white = |point: ControlPoint| ControlPoint(point.0, Vec3::ONE, point.2);
+        Self {
+            points: self.points_in_force().into_iter().map(white).collect(),
+            iso: self.iso.iter().map(|iso| IsoValue { color: Vec3::ONE, ..*iso }).collect(),
+            ..self.clone()
+        }
     }
 
     /// The points in force: those written, or a ramp from clear to white where neither points nor iso values nor labels are.

@@ -40,6 +40,9 @@ pub use crate::sources::{Endian, SampleFormat};
 /// | `skip_bytes` | length of a header in front of the samples | bytes | – | 0 |
 /// | `interpolation` | as above | – | – | `Auto` |
 ///
+/// Samples of `Rgba8` are colours: red, green, blue and opacity, the first three encoded as in sRGB, in which they are interpolated, too. They are
+/// drawn in their own colour, which is their albedo in light; [`TransferFunction`] says how opacity follows from luminance.
+///
 /// A voxel is a cell around its sample, so the volume is `size * spacing` millimetres long. Between samples the field is trilinear;
 /// in the half voxel at the border it is constant. Samples that are not finite are counted, reported and missing: what lies between samples is the
 /// mean of those that there are, by their weights, and the medium ends where half of the weights are missing, within half a voxel. That end is

@@ -25,6 +25,8 @@ pub enum Texels {
     Values,
     /// A value and 1, or 0 and 0 where there is none: interpolated, the one over the other is the mean of the values that there are.
     Masked,
+    /// Red, green and blue as sRGB encodes them, 0 to 255, times opacity, and opacity. The value is the luminance.
+    Colours,
 }
 
 /// Who interpolates between texels.
@@ -72,11 +74,11 @@ impl VolumeFormat {
     pub fn choose(gpu: &Gpu, samples: SampleFormat, is_masked: bool) -> Self {
         use wgpu::TextureFormat as Format;
         let (low, steps) = match samples {
-            SampleFormat::U8 | SampleFormat::Rgba8 => (0.0, 255.0),
+            SampleFormat::U8 => (0.0, 255.0),
             SampleFormat::I8 => (-128.0, 255.0),
             SampleFormat::U16 => (0.0, 65535.0),
             SampleFormat::I16 => (-32768.0, 65535.0),
-            SampleFormat::F32 => (0.0, 1.0),
+            SampleFormat::F32 | SampleFormat::Rgba8 => (0.0, 1.0),
         };
         let texels = Texels::Values;
         let exact =
@@ -87,10 +89,10 @@ impl VolumeFormat {
             false => exact(Format::R32Float),
         };
         match samples {
-            SampleFormat::U8 | SampleFormat::I8 | SampleFormat::Rgba8 if gpu.is_software() => {
-                exact(Format::R16Float)
-            }
-            SampleFormat::U8 | SampleFormat::I8 | SampleFormat::Rgba8 => normalised(Format::R8Unorm),
+            // Times opacity colours would have too few steps left in 8 bits.
+            SampleFormat::Rgba8 => Self { texels: Texels::Colours, ..exact(Format::Rgba16Float) },
+            SampleFormat::U8 | SampleFormat::I8 if gpu.is_software() => exact(Format::R16Float),
+            SampleFormat::U8 | SampleFormat::I8 => normalised(Format::R8Unorm),
             SampleFormat::U16 | SampleFormat::I16 if gpu.has(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM) => {
                 normalised(Format::R16Unorm)
             }

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, VolumeFormat};
 use crate::loading::{LoadedMesh, LoadedVolume};
 use crate::scene::{EntityProblems, Problem};
-use crate::sources::volume::{is_present, luminance};
+use crate::sources::volume::is_present;
 use crate::sources::{MeshData, Samples};
 use crate::{Stage, report::Report};
 use bevy_app::{App, Plugin, Update};
@@ -244,10 +244,11 @@ fn convert(samples: &Samples, range: std::ops::Range<usize>, format: VolumeForma
     }
     match (samples, format.texture) {
         (Samples::U8(s), Format::R8Unorm) => s[range].to_vec(),
-        (Samples::Rgba8(s), Format::R8Unorm) => s[range].iter().map(|&colour| luminance(colour)).collect(),
-        (Samples::Rgba8(s), Format::R16Float) => {
-            bytes(s[range].iter().map(|&colour| f16::from_f32(luminance(colour).into())))
-        }
+        (Samples::Rgba8(s), _) => bytes(s[range].iter().map(|&[red, green, blue, opacity]| {
+            let opacity = f32::from(opacity) / 255.0;
+            let [red, green, blue] = [red, green, blue].map(|primary| f32::from(primary) * opacity);
+            [red, green, blue, opacity].map(f16::from_f32)
+        })),
         (Samples::I8(s), Format::R8Unorm) => bytes(s[range].iter().map(|s| (i16::from(*s) + 128) as u8)),
         (Samples::U8(s), Format::R16Float) => {
             let halves: Vec<f16> = (0..=255u8).map(|value| f16::from_f32(f32::from(value))).collect();

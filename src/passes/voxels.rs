@@ -33,6 +33,7 @@ impl Reading {
         match self.texels {
             Texels::Values => "plain",
             Texels::Masked => "masked",
+            Texels::Colours => "coloured",
         }
     }
 
@@ -53,10 +54,12 @@ pub(crate) fn module(readings: &[Reading], first_binding: usize) -> String {
     let brick = BrickRanges::BRICK;
     let count = readings.len();
     let any_partial = readings.iter().any(|reading| reading.texels != Texels::Values);
+    let any_tinted = readings.iter().any(|reading| reading.texels == Texels::Colours);
     let any_nearest = readings.iter().any(|reading| reading.is_nearest);
     let mut text = format!(
         "#import voxel\nconst VOLUMES = {count}u;\nconst BRICK_ROW = {BRICK_ROW}u;\nconst BRICK = {brick}.0;\n\
-         const TABLE_ROW = {TABLE_ROW}u;\nconst ANY_PARTIAL = {any_partial};\nconst ANY_NEAREST = {any_nearest};\n"
+         const TABLE_ROW = {TABLE_ROW}u;\nconst ANY_PARTIAL = {any_partial};\nconst ANY_NEAREST = {any_nearest};\n\
+         const ANY_TINTED = {any_tinted};\n"
     );
     let mut cases = String::new();
     for (index, reading) in readings.iter().enumerate() {

@@ -48,7 +48,7 @@ pub enum SampleFormat {
     I16,
     /// IEEE 754, 32 bits.
     F32,
-    /// A colour: red, green, blue and opacity, 8 bits each, the first three encoded as in sRGB. Its value is its luminance.
+    /// A colour: red, green, blue and opacity, 8 bits each, the first three encoded as in sRGB. Its value is its luminance, and none where it is clear.
     Rgba8,
 }
 
@@ -109,11 +109,13 @@ pub enum Samples {
     Rgba8(Vec<[u8; 4]>),
 }
 
-/// The value of a colour, 0 to 255: the luminance of its encoded primaries (ITU-R BT.709 weights) times its opacity.
-pub fn luminance([red, green, blue, opacity]: [u8; 4]) -> u8 {
-    let [red, green, blue, opacity] = [red, green, blue, opacity].map(u32::from);
-    let luma = 2126 * red + 7152 * green + 722 * blue;
-    ((luma * opacity + 1_275_000) / 2_550_000) as u8
+/// The value of a colour, 0 to 255: the luminance of its encoded primaries (ITU-R BT.709 weights); NaN of what is clear, whose colour means nothing.
+pub fn luminance([red, green, blue, opacity]: [u8; 4]) -> f32 {
+    if opacity == 0 {
+        return f32::NAN;
+    }
+    let [red, green, blue] = [red, green, blue].map(u32::from);
+    (2126 * red + 7152 * green + 722 * blue) as f32 / 10_000.0
 }
 
 impl Samples {
@@ -166,7 +168,7 @@ impl Samples {
             Self::U16(samples) => samples.get(index).map(|&sample| sample.into()),
             Self::I16(samples) => samples.get(index).map(|&sample| sample.into()),
             Self::F32(samples) => samples.get(index).copied(),
-            Self::Rgba8(samples) => samples.get(index).map(|&colour| luminance(colour).into()),
+            Self::Rgba8(samples) => samples.get(index).map(|&colour| luminance(colour)),
         }
     }
 

@@ -38,7 +38,8 @@ fn range_of_bytes(samples: &Samples, range: (f32, f32)) -> (f32, f32) {
         Samples::I8(samples) => {
             count(samples.iter().map(|&sample| (i16::from(sample) + 128) as usize), -128.0)
         }
-        _ => return range,
+        // Colours have a scale of their own.
+        _ => return (0.0, 255.0),
     };
     core(&counted, range)
 }

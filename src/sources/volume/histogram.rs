@@ -34,7 +34,13 @@ impl Histogram {
             Samples::U16(samples) => Self::of_numbers(samples, range),
             Samples::I16(samples) => Self::of_numbers(samples, range),
             Samples::F32(samples) => Self::of_numbers(samples, range),
-            Samples::Rgba8(samples) => of_bytes(count(samples, |colour| luminance(colour).into()), 0.0),
+            Samples::Rgba8(samples) => {
+                let bin = |colour| match luminance(colour) {
+                    value if value.is_nan() => Self::BINS,
+                    value => value.round() as usize,
+                };
+                of_bytes(count(samples, bin), 0.0)
+            }
         }
     }
 

@@ -17,7 +17,7 @@ pub(super) fn slices_of(samples: &Samples, size: [u32; 3]) -> SliceRanges {
         Samples::U16(samples) => scan(samples, size, |&sample| sample.into()),
         Samples::I16(samples) => scan(samples, size, |&sample| sample.into()),
         Samples::F32(samples) => scan(samples, size, |&sample| sample),
-        Samples::Rgba8(samples) => scan(samples, size, |&colour| luminance(colour).into()),
+        Samples::Rgba8(samples) => scan(samples, size, |&colour| luminance(colour)),
     }
 }
 
