@@ -72,10 +72,6 @@ fn depth_between(one: Passed, other: Passed) -> f32 {
             back.shown = 0.0;
         }
     }
-    if ANY_NEAREST {
-        // Nothing lies between the values of two voxels.
-        return segments.length * 0.5 * (front.shown * front.sigma_t + back.shown * back.sigma_t);
-    }
     let across = back.entry - front.entry;
     let integral = (back.depth.x - front.depth.x) + (back.depth.y - front.depth.y);
     // Next to each other the integral has no digits left, and the function no room to bend.
@@ -134,6 +130,12 @@ fn follow(march: ptr<function, March>, first: f32, end: f32, texel: vec2u) {
         while slice < turn {
             var added = 0.0;
             for (var i = 1u; i <= segments.count; i += 1u) {
+                if ANY_NEAREST {
+                    // Nothing lies between the values of two voxels.
+                    let within = passed_at(start + step * slice + part * (f32(i) - 0.5));
+                    added += segments.length * within.shown * within.sigma_t;
+                    continue;
+                }
                 let back = passed_at(start + step * slice + part * f32(i));
                 added += depth_between(front, back);
                 front = back;

@@ -39,7 +39,7 @@ const TABLES: [Table; 4] = [in_company::TABLE, in_the_way::TABLE, meshes::TABLE,
 
 /// Fields without a row of their own, since no scene of the tables has what they need: those that choose what is read of a file, any change of
 /// which reads it again as one of its path does, a preset in place of points, and a camera that frames the scene.
-const WITHOUT_A_ROW: [&str; 21] = [
+const WITHOUT_A_ROW: [&str; 19] = [
     "Mesh.File.normals.Flat",
     "Mesh.File.normals.Smooth",
     "Mesh.File.normals.Smooth.0",
@@ -59,8 +59,6 @@ const WITHOUT_A_ROW: [&str; 21] = [
     "Volume.File.series.Some",
     "Volume.File.series.Some.0",
     "Volume.Raw.format.Rgba8",
-    "Volume.Raw.interpolation.Linear",
-    "Volume.Raw.interpolation.Nearest",
 ];
 
 #[test]

@@ -131,9 +131,10 @@ fn make(
     report: &mut Report,
 ) -> Result<Grid, GpuError> {
     let grid = Grid::new(gpu, "light cells", cells, wgpu::TextureFormat::Rgba32Float)?;
-    // Every other voxel, with its neighbours by interpolation.
+    // Every other voxel, with its neighbours by interpolation; each, where nothing is interpolated.
+    let every = if classified.is_nearest { 1.0 } else { 2.0 };
     let voxels = UVec3::from(loaded.data.size).as_vec3() / cells.as_vec3();
-    let samples = (voxels / 2.0).ceil().as_uvec3().clamp(UVec3::ONE, UVec3::splat(16));
+    let samples = (voxels / every).ceil().as_uvec3().clamp(UVec3::ONE, UVec3::splat(16));
     let uniform = uniform_buffer(gpu, "cells", &CellsUniform { count: cells, samples });
     let entries: Vec<[f32; 4]> = classified.table.entries.iter().map(|entry| entry.to_array()).collect();
     let medium = Medium::new(gpu, loaded, classified, texture, &entries);

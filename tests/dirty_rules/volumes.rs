@@ -22,6 +22,12 @@ const SCENE: &str = r#"(
             ),
             VolumeLighting: LightVolume(cone_angle: 40.0, towards_eye: true, g: 0.4),
         ),
+        "map": (
+            Transform: (translation: (0.0, -8.0, 0.0)),
+            Volume: Raw(path: "smoke.raw", size: (10, 10, 10)),
+            TransferFunction: (labels: [(value: 30, color: (0.9, 0.2, 0.1), opacity: 0.5, name: "smoke")]),
+            VolumeLighting: Gradient(),
+        ),
     },
 )"#;
 
@@ -29,6 +35,10 @@ const SCENE: &str = r#"(
 const EYE_MOVED: &str = "eye_light 3";
 const CLOUD_RELOADED: &str = "upload_volumes 1 of 1000 voxels, classify 1 of 64 entries, preclassify 1, light_volume 2, light_cells 1, light_network 1, scattered_light 2, summed_light 1, eye_light 3";
 const CLOUD_SCATTERS_OTHERWISE: &str = "light_network 1, scattered_light 2, summed_light 1, eye_light 3";
+
+/// Normals are of what is visible of labels.
+const MAP_RECOLOURED: &str = "classify 1 of 3 entries, preclassify 1 of 1000 voxels";
+const MAP_RELOADED: &str = "upload_volumes 1 of 1000 voxels, classify 1 of 3 entries, preclassify 1";
 
 pub const TABLE: Table = Table {
     name: "volumes",
@@ -86,6 +96,14 @@ pub const TABLE: Table = Table {
         ("cloud.TransferFunction.classification", "Post", "classify 1 of 64 entries"),
         ("cloud.VolumeLighting.cone_angle", "50.0", CLOUD_SCATTERS_OTHERWISE),
         ("cloud.VolumeLighting.g", "0.5", CLOUD_SCATTERS_OTHERWISE),
+        ("map.Volume.interpolation", "Linear", MAP_RELOADED),
+        ("map.Volume.interpolation", "Nearest", MAP_RELOADED),
+        ("map.TransferFunction.labels[0].value", "31", MAP_RECOLOURED),
+        ("map.TransferFunction.labels[0].color", "(0.8, 0.2, 0.1)", MAP_RECOLOURED),
+        ("map.TransferFunction.labels[0].opacity", "0.6", MAP_RECOLOURED),
+        ("map.TransferFunction.labels[0].name", "\"fog\"", MAP_RECOLOURED),
+        ("map.TransferFunction.labels", "[]", "classify 1 of 1024 entries"),
+        ("map.VolumeLighting", "EmissionAbsorption", ""),
         ("cloud.VolumeLighting.towards_eye", "false", "light_network 1, scattered_light 2, summed_light 1"),
     ],
 };

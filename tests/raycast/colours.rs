@@ -3,6 +3,7 @@
 use super::support::{Studio, difference};
 use super::{camera, middle};
 use tyndall::gpu::GpuOptions;
+use tyndall_needs::needs;
 
 const SIDE: usize = 8;
 
@@ -55,8 +56,8 @@ fn slice(studio: &Studio, function: &str, interpolation: &str) -> String {
     )
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn a_place_shows_the_colour_of_the_data() {
     // Opacity grows with luminance from 0.2 to 0.8; the tint of the second is what colours of a function are for.
     let functions = [
@@ -118,8 +119,8 @@ fn ball(studio: &Studio, function: &str, lighting: &str, ray_cast: &str) -> Stri
     )
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn without_colours_that_are_written_nothing_tints_the_data() {
     let mut studio = Studio::new();
     for function in ["", "preset: \"Object\"", "preset: \"Glow\"", "domain: (0.0, 200.0)"] {
@@ -134,8 +135,8 @@ fn without_colours_that_are_written_nothing_tints_the_data() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn light_is_scattered_by_the_colour_of_the_data() {
     let mut studio = Studio::new();
     let function = "points: [(0.0, (1.0, 1.0, 1.0), 0.4)], opacity_length: 1.0";

@@ -7,6 +7,7 @@ use tyndall::gpu::GpuOptions;
 use tyndall::loading::{Contents, contents};
 use tyndall::optics::labels::palette;
 use tyndall::render;
+use tyndall_needs::needs;
 
 const LIGHTINGS: [&str; 5] = [
     "EmissionAbsorption",
@@ -47,8 +48,8 @@ fn only_label_2(classification: &str) -> String {
     )
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn no_label_is_seen_that_is_not_in_the_data() {
     for portable in [false, true] {
         let mut studio = Studio::with(&GpuOptions { portable });
@@ -71,8 +72,8 @@ fn no_label_is_seen_that_is_not_in_the_data() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn every_label_has_its_own_colour_to_the_last() {
     const SIDE: usize = 8;
     let label = |x: usize, y: usize| {
@@ -120,8 +121,8 @@ fn every_label_has_its_own_colour_to_the_last() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn labels_are_shaded_as_smooth_surfaces() {
     let mut studio = Studio::new();
     ball(&studio);
@@ -147,8 +148,8 @@ fn labels_are_shaded_as_smooth_surfaces() {
     assert!(count > 1000.0 && error < 0.1, "{error}");
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn light_in_labels_is_that_of_a_medium_with_their_shape() {
     let mut studio = Studio::new();
     ball(&studio);
@@ -179,8 +180,8 @@ fn light_in_labels_is_that_of_a_medium_with_their_shape() {
     }
 }
 
+#[needs(gpu)]
 #[test]
-#[cfg_attr(not(tyndall_gpu), ignore = "no graphics adapter")]
 fn labels_without_a_function_have_colours_of_their_own() {
     let mut studio = Studio::new();
     ball(&studio);
