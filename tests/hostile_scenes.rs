@@ -110,7 +110,7 @@ fn a_problem_shows_three_lines_at_most() {
         format!("(\n{long}    entities: [\n{long}],\n)"),
         format!("(entities: {{ \"ball\": ( Mesh: Box(size: [\n{long}1.0]) ) }})"),
         format!("(entities: {{ \"ball\": (),\n{long} \"ball\": () }})"),
-        format!("(entities: {{ \"ball\": (),\n\n\"ball\": () }})"),
+        "(entities: { \"ball\": (),\n\n\"ball\": () })".to_string(),
         format!("(entities: {{ \"ball\": (\n{long}"),
         format!("(entities: {{ \"ball\": ( Phong: \"{long}"),
         "(\r\n\tentities: {\r\n\t\t\"ball\": ( Fong: () ),\r\n\t},\r\n)\r\n".into(),
@@ -168,7 +168,7 @@ fn many_mistakes_are_soon_found() {
         ("missing files", entities(many, |_| "Phong: File(\"none.ron\")".into(), "\n"), 1),
     ];
     let mut fields = String::from("(");
-    (0..many).for_each(|n| write!(fields, "field{n}: {n},\n").unwrap());
+    (0..many).for_each(|n| writeln!(fields, "field{n}: {n},").unwrap());
     texts.push(("fields of the head", fields + ")", many));
     let points =
         (0..many).map(|n| format!("({}, (1.0, 1.0, 1.0), 9.0)", many - n)).collect::<Vec<_>>().join(",");

@@ -65,7 +65,7 @@ impl LoadedVolume {
             }
         }
         let counted = |label: LabelColour| counts.get(&label.value).map(|count| (label, *count));
-        self.colours_of(values.clone()).into_iter().filter_map(counted).collect()
+        self.colours_of(values).into_iter().filter_map(counted).collect()
     }
 }
 

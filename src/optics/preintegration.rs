@@ -291,6 +291,7 @@ mod tests {
                 layer(0.1004, Vec3::Y, 2.0),
                 layer(0.8, Vec3::ONE, 1e-6),
             ],
+            is_exact: false,
         }
     }
 

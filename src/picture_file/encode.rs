@@ -42,7 +42,7 @@ fn exr(image: &Image, pixels: &[[f32; 3]]) -> Result<Vec<u8>, EncodeError> {
             encoder.write_image(bytemuck::cast_slice(&texels), width, height, ExtendedColorType::Rgba32F)?;
         }
         None => {
-            encoder.write_image(bytemuck::cast_slice(pixels), width, height, ExtendedColorType::Rgb32F)?
+            encoder.write_image(bytemuck::cast_slice(pixels), width, height, ExtendedColorType::Rgb32F)?;
         }
     }
     Ok(bytes.into_inner())

@@ -81,7 +81,7 @@ fn every_label_has_its_own_colour_to_the_last() {
     };
     // What is not listed is clear.
     let listed = [1u16, 255, 256, 8191, 40_000, 65_534, 65_535];
-    let colour = |label: u16| [0.1, 0.3, 0.5].map(|share| (share + f32::from(label) / 65_535.0 * 0.4));
+    let colour = |label: u16| [0.1, 0.3, 0.5].map(|share| share + f32::from(label) / 65_535.0 * 0.4);
     let table: Vec<String> = listed
         .iter()
         .map(|value| {

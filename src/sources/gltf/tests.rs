@@ -58,7 +58,7 @@ fn glb(document: &Value, binary: &[u8]) -> Vec<u8> {
 }
 
 fn read_document(document: &Value, binary: &[u8]) -> Result<MeshData, SourceError> {
-    super::read(Path::new("a.glb"), &glb(document, binary), Normals::Auto)
+    read(Path::new("a.glb"), &glb(document, binary), Normals::Auto)
 }
 
 fn message(document: &Value, binary: &[u8]) -> String {
@@ -82,7 +82,7 @@ fn buffers_may_be_inside_in_text_or_beside() {
     ] {
         written["buffers"][0]["uri"] = uri.clone().into();
         let text = format!("\u{feff}{written:#}");
-        let mesh = super::read(&folder.path().join("a.gltf"), text.as_bytes(), Normals::Auto);
+        let mesh = read(&folder.path().join("a.gltf"), text.as_bytes(), Normals::Auto);
         assert_eq!(mesh.unwrap(), expected, "{uri}");
     }
 }
@@ -357,7 +357,7 @@ fn what_cannot_be_read_is_refused_by_name() {
         }
     }
     let whole = glb(&written, &bytes);
-    let read = |bytes: &[u8]| super::read(Path::new("a.glb"), bytes, Normals::Auto).unwrap_err().to_string();
+    let read = |bytes: &[u8]| read(Path::new("a.glb"), bytes, Normals::Auto).unwrap_err().to_string();
     assert!(read(&whole[..whole.len() - 9]).contains("its BIN chunk of 42 bytes is cut off after 33"));
     assert!(read(b"glTF\x01\0\0\0\0\0\0\0").contains("binary glTF of version 1; version 2 is read"));
     assert!(read(b"{ \"asset\": 3 }").contains("a.glb: JSON: "));

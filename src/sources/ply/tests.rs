@@ -5,7 +5,7 @@ use crate::sources::procedural;
 use glam::{DVec3, Vec2, Vec3};
 
 fn read_bytes(bytes: &[u8]) -> Result<MeshData, SourceError> {
-    super::read(Path::new("a.ply"), bytes, Normals::Auto)
+    read(Path::new("a.ply"), bytes, Normals::Auto)
 }
 
 fn message(bytes: impl AsRef<[u8]>) -> String {
@@ -107,7 +107,7 @@ fn the_picture_of_a_comment_colours_the_corners_of_faces() {
     let body =
         SQUARE.replace("3 0 1 2", "3 0 1 2 6 0 0 1 0 1 1").replace("3 0 2 3", "3 0 2 3 6 0 0 1 1 0 .5");
     let path = folder.path().join("a.ply");
-    let mesh = super::read(&path, text(&header, &body).as_bytes(), Normals::Auto).unwrap();
+    let mesh = read(&path, text(&header, &body).as_bytes(), Normals::Auto).unwrap();
     assert!(mesh.notes.is_empty(), "{:?}", mesh.notes);
     let picture = mesh.materials[0].diffuse_texture.as_ref().unwrap();
     assert_eq!((picture.width, picture.height, picture.texels[1]), (2, 1, [9, 8, 7, 255]));

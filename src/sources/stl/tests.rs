@@ -5,7 +5,7 @@ use crate::sources::procedural;
 use glam::Vec3;
 
 fn read_bytes(bytes: &[u8]) -> Result<MeshData, SourceError> {
-    super::read(Path::new("a.stl"), bytes, Normals::Auto)
+    read(Path::new("a.stl"), bytes, Normals::Auto)
 }
 
 fn message(bytes: impl AsRef<[u8]>) -> String {
