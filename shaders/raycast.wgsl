@@ -13,6 +13,7 @@
 #import lights
 #import phase
 #import peak
+#import parts
 #import volumes
 #import lighting
 #import light_volumes
@@ -85,9 +86,6 @@ struct March {
 @group(0) @binding(4) var brick_distances: texture_2d<u32>;
 @group(0) @binding(5) var surface: texture_2d<f32>;
 @group(0) @binding(6) var linear_sampler: sampler;
-
-// Samples between two looks at the bricks: lanes that march together stay together.
-const RUN = 16.0;
 
 // Samples that are lit together where light is scattered often, at most, and the optical depth that is enough for them: light varies by
 // less over them than the model is off. More, to four times that, the less of the light from there reaches the eye.
@@ -362,151 +360,284 @@ fn joined(all: Together, colour: vec3f, depth: f32, along: f32) -> Together {
     );
 }
 
-@fragment
-fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let ray = ray_through(position.xy, frame);
-    let behind = textureLoad(surface, min(vec2u(position.xy), textureDimensions(surface) - 1u), 0);
-    var marches: array<March, VOLUMES>;
-    for (var i = 0u; i < VOLUMES; i += 1u) {
-        marches[i] = start_march(i, ray, behind.a);
-    }
-    var radiance = vec3f(0.0);
-    var transmittance = 1.0;
+// What a ray has gathered, and what it still sees.
+struct Gathered {
+    radiance: vec3f,
+    transmittance: f32,
     // Of light in a forward peak, too.
-    var thin_transmittance = 1.0;
-    var samples = 0.0;
-    loop {
-        // The volume whose next segment is the nearest, and where the next of the others begins.
-        var index = 0u;
-        var nearest = FAR;
-        var until = FAR;
-        for (var i = 0u; i < VOLUMES; i += 1u) {
-            let start = marches[i].enter + marches[i].done * volumes[i].step;
-            if marches[i].done < marches[i].count {
-                until = min(until, max(start, nearest));
-                index = select(index, i, start < nearest);
-                nearest = min(nearest, start);
-            }
+    thin_transmittance: f32,
+    samples: f32,
+}
+
+// The share of what lies behind that is still seen.
+fn left_of(gathered: Gathered) -> f32 {
+    return select(gathered.transmittance, gathered.thin_transmittance, ANY_PEAK);
+}
+
+// Whose segments come next.
+struct Turn {
+    index: u32,
+    // Where the next of them begins; FAR where there is none.
+    nearest: f32,
+    // Where the next of the others begins.
+    until: f32,
+}
+
+fn next_turn(marches: array<March, VOLUMES>) -> Turn {
+    var turn = Turn(0u, FAR, FAR);
+    for (var i = 0u; i < VOLUMES; i += 1u) {
+        let start = marches[i].enter + marches[i].done * volumes[i].step;
+        if marches[i].done < marches[i].count {
+            turn.until = min(turn.until, max(start, turn.nearest));
+            turn.index = select(turn.index, i, start < turn.nearest);
+            turn.nearest = min(turn.nearest, start);
         }
-        if nearest == FAR {
+    }
+    return turn;
+}
+
+// The way of a ray through one volume, kept at hand during its turn.
+struct Way {
+    index: u32,
+    classification: u32,
+    // Whether segments are looked up by both of their ends.
+    integrated: bool,
+    // Whether each sample is lit for itself.
+    alone: bool,
+    lookup: Lookup,
+    // The texture of the volume = start + direction * distance from where the ray enters.
+    start: vec3f,
+    direction: vec3f,
+    // How much of the ray is inside.
+    length: f32,
+    // The same in bricks, and from segment to segment.
+    bricks: vec3f,
+    pace: vec3f,
+    top: vec3f,
+}
+
+fn way_of(index: u32, volume: VolumeInstance, ray: Ray, enter: f32, leave: f32) -> Way {
+    var way: Way;
+    way.index = index;
+    way.classification = classification_of(index);
+    way.integrated = ANY_PRE_INTEGRATED && way.classification == PRE_INTEGRATED;
+    way.alone = !ANY_OFTEN || way.integrated || volume.lighting < 4u;
+    way.lookup = lookup_of(volume);
+    way.direction = (volume.texture_from_eye * vec4f(ray.direction, 0.0)).xyz;
+    way.start = (volume.texture_from_eye * vec4f(ray.origin, 1.0)).xyz + way.direction * enter;
+    way.length = leave - enter;
+    way.bricks = volume.size / BRICK;
+    way.pace = away_from_zero(way.direction * way.bricks * volume.step);
+    way.top = vec3f(volume.bricks) - 0.5;
+    return way;
+}
+
+// From a segment on to the next in a brick that holds something, but not beyond `turn`.
+fn leap(way: Way, volume: VolumeInstance, first: f32, turn: f32, work: ptr<function, u32>) -> f32 {
+    var done = first;
+    loop {
+        if volume.skip_empty == 0u || done >= turn || (IN_PARTS && *work > MOST_WORK) {
             break;
         }
-        var volume = volumes[min(index, VOLUMES - 1u)];
-        volume.lighting = lighting_of(index, volume.lighting);
-        let enter = marches[index].enter;
-        let leave = marches[index].leave;
-        let count = marches[index].count;
-        let classification = classification_of(index);
-        let integrated = ANY_PRE_INTEGRATED && classification == PRE_INTEGRATED;
-        let alone = !ANY_OFTEN || integrated || volume.lighting < 4u;
-        let lookup = lookup_of(volume);
-        let direction = (volume.texture_from_eye * vec4f(ray.direction, 0.0)).xyz;
-        let start = (volume.texture_from_eye * vec4f(ray.origin, 1.0)).xyz + direction * enter;
-        var ways: array<LightWay, LIGHT_WAYS>;
-        for (var i = 0u; i < LIGHTS; i += 1u) {
-            ways[i] = light_way(volume.first_sweep + i, start, direction);
+        *work += WORK_OF_LEAP;
+        // A segment is looked at in its middle, or at both ends: then all of it is to be in empty bricks.
+        let at = clamp(way.start * way.bricks + way.pace * (done + select(0.5, 0.0, way.integrated)), vec3f(0.0), way.top);
+        let brick = floor(at);
+        let reach = brick_distance(volume.bricks, volume.bricks_start, vec3u(brick));
+        if reach == 0.0 {
+            break;
         }
-        // The same in bricks.
-        let bricks = volume.size / BRICK;
-        let pace = away_from_zero(direction * bricks * volume.step);
-        let top = vec3f(volume.bricks) - 0.5;
-        // Segments before the next volume's turn comes: no more than there are, and at least one, whatever rounding says.
-        var done = marches[index].done;
-        let turn = min(count, max(done, floor((until - enter) / volume.step)) + 1.0);
+        let wall = select(brick - (reach - 1.0), brick + reach, way.pace > vec3f(0.0));
+        let walls = (wall - at) / way.pace;
+        let wall_distance = min(walls.x, min(walls.y, walls.z)) - 1e-3;
+        if way.integrated && wall_distance < 1.0 {
+            break;
+        }
+        done += select(max(1.0, ceil(wall_distance)), floor(wall_distance), way.integrated);
+    }
+    return done;
+}
+
+// A segment, with what was found at the end of the one before, where both ends are looked up.
+fn segment(way: Way, volume: VolumeInstance, done: f32, all: Together, back: ptr<function, Voxel>) -> Together {
+    let length = min(volume.step, way.length - done * volume.step);
+    if way.integrated {
+        let front = *back;
+        *back = voxel_at(way.index, way.start + way.direction * (done * volume.step + length));
+        let found = pre_integrated(way.index, way.lookup, front, *back, length / volume.step);
+        var at = 0.5;
+        if ANY_LIT {
+            at = surface_in(way.index, way.lookup, front, *back);
+        }
+        let along = done * volume.step + at * length;
+        return joined(all, tinted(found.rgb, front, *back), found.a, along);
+    }
+    let along = done * volume.step + 0.5 * length;
+    let found = found_at(way.index, volume, way.lookup, way.classification, way.start + way.direction * along);
+    return joined(all, found.colour, found.extinction * volume.reach * length, along);
+}
+
+// What is left behind a piece that absorbs the share `alpha`. Of hundreds of thousands that are as thin as each other, the digits that 1 - alpha
+// loses would add up.
+fn dimmed(transmittance: f32, alpha: f32) -> f32 {
+    if IN_PARTS {
+        return transmittance - transmittance * alpha;
+    }
+    return transmittance * (1.0 - alpha);
+}
+
+// What samples that are lit together show, in front of all that comes after.
+fn show(
+    way: Way,
+    volume: VolumeInstance,
+    together: Together,
+    ray: Ray,
+    ways: array<LightWay, LIGHT_WAYS>,
+    before: Gathered,
+) -> Gathered {
+    let part = 1.0 / max(together.alpha, 1e-30);
+    var sample = Sample(together.colour * part, vec3f(0.0), together.along * part, 1.0);
+    sample.thinned = thinning(volume, sample.colour);
+    var colour = sample.colour;
+    if ANY_LIT {
+        sample.place = way.start + way.direction * sample.along;
+        colour = source(way.index, volume, sample, ray, ways);
+    }
+    var gathered = before;
+    if ANY_PEAK {
+        let thin_alpha = absorbed(together.depth * sample.thinned);
+        gathered.radiance += before.thin_transmittance * thin_alpha * colour;
+        gathered.thin_transmittance = dimmed(before.thin_transmittance, thin_alpha);
+    } else {
+        gathered.radiance += before.transmittance * together.alpha * colour;
+    }
+    gathered.transmittance = dimmed(before.transmittance, together.alpha);
+    return gathered;
+}
+
+// The segments from `first` to `end`, or as far as anything is seen; answers where that is.
+fn run(
+    way: Way,
+    volume: VolumeInstance,
+    first: f32,
+    end: f32,
+    ray: Ray,
+    ways: array<LightWay, LIGHT_WAYS>,
+    gathered: ptr<function, Gathered>,
+) -> f32 {
+    var done = first;
+    var back: Voxel;
+    if way.integrated {
+        back = voxel_at(way.index, way.start + way.direction * (done * volume.step));
+    }
+    loop {
+        if done >= end {
+            break;
+        }
+        var together = Together();
+        var until_together = end;
+        let seen = max(left_of(*gathered), LEAST_SEEN);
+        // On to a sample that absorbs, and a few more where light is scattered often: to look it up costs most, and all lanes are
+        // to have something to look up.
         loop {
-            // Leap to the next brick that holds something.
-            loop {
-                if volume.skip_empty == 0u || done >= turn {
-                    break;
-                }
-                // A segment is looked at in its middle, or at both ends: then all of it is to be in empty bricks.
-                let at = clamp(start * bricks + pace * (done + select(0.5, 0.0, integrated)), vec3f(0.0), top);
-                let brick = floor(at);
-                let reach = brick_distance(volume.bricks, volume.bricks_start, vec3u(brick));
-                if reach == 0.0 {
-                    break;
-                }
-                let wall = select(brick - (reach - 1.0), brick + reach, pace > vec3f(0.0));
-                let walls = (wall - at) / pace;
-                let wall_distance = min(walls.x, min(walls.y, walls.z)) - 1e-3;
-                if integrated && wall_distance < 1.0 {
-                    break;
-                }
-                done += select(max(1.0, ceil(wall_distance)), floor(wall_distance), integrated);
-            }
-            let end = min(done + RUN, turn);
-            samples -= done;
-            var front: Voxel;
-            var back: Voxel;
-            if integrated {
-                back = voxel_at(index, start + direction * (done * volume.step));
-            }
-            loop {
-                if done >= end {
-                    break;
-                }
-                var together = Together();
-                var until_together = end;
-                let seen = max(select(transmittance, thin_transmittance, ANY_PEAK), LEAST_SEEN);
-                // On to a sample that absorbs, and a few more where light is scattered often: to look it up costs most, and all lanes are
-                // to have something to look up.
-                loop {
-                    until_together = select(until_together, min(end, done + floor(TOGETHER / seen)), together.depth == 0.0);
-                    let length = min(volume.step, leave - enter - done * volume.step);
-                    if integrated {
-                        front = back;
-                        back = voxel_at(index, start + direction * (done * volume.step + length));
-                        let found = pre_integrated(index, lookup, front, back, length / volume.step);
-                        var at = 0.5;
-                        if ANY_LIT {
-                            at = surface_in(index, lookup, front, back);
-                        }
-                        let along = done * volume.step + at * length;
-                        together = joined(together, tinted(found.rgb, front, back), found.a, along);
-                    } else {
-                        let along = done * volume.step + 0.5 * length;
-                        let found = found_at(index, volume, lookup, classification, start + direction * along);
-                        together = joined(together, found.colour, found.extinction * volume.reach * length, along);
-                    }
-                    done += 1.0;
-                    let is_enough = alone || together.depth * seen > DEPTH_TOGETHER || done >= until_together;
-                    if !ANY_LIT || done >= end || (together.depth > 0.0 && is_enough) {
-                        break;
-                    }
-                }
-                let alpha = together.alpha;
-                let depth = together.depth;
-                let part = 1.0 / max(alpha, 1e-30);
-                var sample = Sample(together.colour * part, vec3f(0.0), together.along * part, 1.0);
-                sample.thinned = thinning(volume, sample.colour);
-                var colour = sample.colour;
-                if ANY_LIT {
-                    sample.place = start + direction * sample.along;
-                    colour = source(index, volume, sample, ray, ways);
-                }
-                if ANY_PEAK {
-                    let thin_alpha = absorbed(depth * sample.thinned);
-                    radiance += thin_transmittance * thin_alpha * colour;
-                    thin_transmittance *= 1.0 - thin_alpha;
-                } else {
-                    radiance += transmittance * alpha * colour;
-                }
-                transmittance *= 1.0 - alpha;
-                if select(transmittance, thin_transmittance, ANY_PEAK) <= volume.least_transmittance {
-                    break;
-                }
-            }
-            samples += done;
-            if done >= turn || select(transmittance, thin_transmittance, ANY_PEAK) <= volume.least_transmittance {
+            until_together = select(until_together, min(end, done + floor(TOGETHER / seen)), together.depth == 0.0);
+            together = segment(way, volume, done, together, &back);
+            done += 1.0;
+            let is_enough = way.alone || together.depth * seen > DEPTH_TOGETHER || done >= until_together;
+            if !ANY_LIT || done >= end || (together.depth > 0.0 && is_enough) {
                 break;
             }
         }
-        marches[index].done = done;
-        if select(transmittance, thin_transmittance, ANY_PEAK) <= volume.least_transmittance {
-            transmittance = 0.0;
+        *gathered = show(way, volume, together, ray, ways, *gathered);
+        if left_of(*gathered) <= volume.least_transmittance {
             break;
         }
     }
-    let hidden = 1.0 - select(0.0, transmittance, behind.a >= FAR);
-    return vec4f(radiance + transmittance * behind.rgb, select(samples, hidden, frame.cut_out == 1u));
+    return done;
+}
+
+// The turn of a volume; answers how many of its segments are done then. `work` counts what loops go through, which is bounded where a ray
+// is cast in parts.
+fn take_turn(
+    turn: Turn,
+    march: March,
+    volume: VolumeInstance,
+    ray: Ray,
+    work: ptr<function, u32>,
+    gathered: ptr<function, Gathered>,
+) -> f32 {
+    let way = way_of(turn.index, volume, ray, march.enter, march.leave);
+    var ways: array<LightWay, LIGHT_WAYS>;
+    for (var i = 0u; i < LIGHTS; i += 1u) {
+        ways[i] = light_way(volume.first_sweep + i, way.start, way.direction);
+    }
+    // Segments before the next volume's turn comes: no more than there are, and at least one, whatever rounding says.
+    var done = march.done;
+    let last = min(march.count, max(done, floor((turn.until - march.enter) / volume.step)) + 1.0);
+    *work += WORK_OF_TURN;
+    loop {
+        done = leap(way, volume, done, last, work);
+        if IN_PARTS && *work > MOST_WORK {
+            break;
+        }
+        let end = min(done + RUN, last);
+        (*gathered).samples -= done;
+        *work += u32(max(end - done, 0.0)) * WORK_OF_SEGMENT + WORK_OF_RUN;
+        done = run(way, volume, done, end, ray, ways, gathered);
+        (*gathered).samples += done;
+        if done >= last || left_of(*gathered) <= volume.least_transmittance {
+            break;
+        }
+    }
+    return done;
+}
+
+// Goes on along a ray, to its end or until there is work enough for one part of it. Answers whether it is at its end.
+fn advance(ray: Ray, marches: ptr<function, array<March, VOLUMES>>, gathered: ptr<function, Gathered>) -> bool {
+    var work = 0u;
+    var is_ended = false;
+    loop {
+        let turn = next_turn(*marches);
+        is_ended = turn.nearest == FAR;
+        if is_ended || (IN_PARTS && work > MOST_WORK) {
+            break;
+        }
+        var volume = volumes[min(turn.index, VOLUMES - 1u)];
+        volume.lighting = lighting_of(turn.index, volume.lighting);
+        (*marches)[turn.index].done = take_turn(turn, (*marches)[turn.index], volume, ray, &work, gathered);
+        is_ended = left_of(*gathered) <= volume.least_transmittance;
+        if is_ended {
+            (*gathered).transmittance = 0.0;
+            break;
+        }
+    }
+    return is_ended;
+}
+
+fn all_marches(ray: Ray, surface_distance: f32) -> array<March, VOLUMES> {
+    var marches: array<March, VOLUMES>;
+    for (var i = 0u; i < VOLUMES; i += 1u) {
+        marches[i] = start_march(i, ray, surface_distance);
+    }
+    return marches;
+}
+
+fn surface_behind(position: vec2f) -> vec4f {
+    return textureLoad(surface, min(vec2u(position), textureDimensions(surface) - 1u), 0);
+}
+
+// What is in the picture at the end of a ray. The last number says what is hidden of what is far away where the picture is cut out.
+fn shown_of(gathered: Gathered, behind: vec4f) -> vec4f {
+    let hidden = 1.0 - select(0.0, gathered.transmittance, behind.a >= FAR);
+    return vec4f(gathered.radiance + gathered.transmittance * behind.rgb, select(gathered.samples, hidden, frame.cut_out == 1u));
+}
+
+@fragment
+fn march(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let ray = ray_through(position.xy, frame);
+    let behind = surface_behind(position.xy);
+    var marches = all_marches(ray, behind.a);
+    var gathered = Gathered(vec3f(0.0), 1.0, 1.0, 0.0);
+    _ = advance(ray, &marches, &gathered);
+    return shown_of(gathered, behind);
 }

@@ -76,6 +76,7 @@ pub fn all() -> Vec<Mirror> {
         passes::shared_light::ShareUniform::mirror(),
         passes::summed_light::SummationUniform::mirror(),
         passes::raycast::VolumeInstance::mirror(),
+        passes::raycast::PartUniform::mirror(),
         passes::tonemap::DisplayUniform::mirror(),
     ]
 }
@@ -112,6 +113,7 @@ pub fn generated_modules() -> Vec<(&'static str, String)> {
         veils,
         passes::volume_shadow::module(&[true, false], 36),
         passes::raycast::scattered_module(&[TowardsEye, Nothing], 40),
+        passes::raycast::parts_module(44),
         passes::scattered_light::leaning_module(true),
         passes::scattered_radiosity::sampling_module(&Default::default(), 5),
         passes::scattered_radiosity::listing_module(false),

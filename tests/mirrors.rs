@@ -28,6 +28,7 @@ fn shaders() -> Vec<(&'static str, naga::Module, String)> {
         "eye_light",
         "dimmed_gbuffer",
         "raycast",
+        "raycast_parts",
         "tonemap",
     ]
     .into_iter()

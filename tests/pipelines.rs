@@ -101,6 +101,17 @@ fn every_pass_of_light_in_volumes_has_valid_pipelines_and_bindings() {
     });
 }
 
+#[test]
+fn rays_that_are_cast_in_parts_have_valid_pipelines_and_bindings() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("v.raw"), [7; 64]).unwrap();
+    let scene = folder.path().join("scene.ron");
+    let text = "(entities: { \"sun\": ( DirectionalLight: (direction: (0.0, 0.0, -1.0)) ),
+        \"a\": ( Volume: Raw(path: \"v.raw\", size: (4, 4, 4), spacing: (0.001, 1.0, 1.0)), VolumeLighting: Gradient(), RayCast: (step: 0.1) ),
+        \"b\": ( Volume: Raw(path: \"v.raw\", size: (4, 4, 1), format: F32) ) })";
+    check(&scene, text, |_| vec!["raycast", "tonemap"]);
+}
+
 /// Draws a scene on all that an adapter may offer, and on as little as it may.
 fn check(scene: &std::path::Path, text: &str, expected: impl Fn(bool) -> Vec<&'static str>) {
     std::fs::write(scene, text).unwrap();

@@ -33,8 +33,12 @@ pub struct DrawDescriptor<'a> {
 impl Draw {
     /// Compiles the shader and makes the pipeline.
     pub fn new(gpu: &Gpu, descriptor: &DrawDescriptor) -> Result<Self, GpuError> {
-        let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
-        let entry = |(index, ty): (usize, &wgpu::BindingType)| layout_entry(index, *ty, visibility);
+        let visibility = |ty: &wgpu::BindingType| match ty {
+            // What vertices write is not to be had everywhere.
+            ty if *ty == binding::STORAGE_OUT => wgpu::ShaderStages::FRAGMENT,
+            _ => wgpu::ShaderStages::VERTEX_FRAGMENT,
+        };
+        let entry = |(index, ty): (usize, &wgpu::BindingType)| layout_entry(index, *ty, visibility(ty));
         let entries: Vec<_> = descriptor.bindings.iter().enumerate().map(entry).collect();
         let layout = layout(gpu, descriptor.name, &entries)?;
         let recipe = Recipe {
@@ -64,7 +68,8 @@ impl Draw {
         target: &wgpu::TextureView,
         timing: Option<wgpu::RenderPassTimestampWrites>,
     ) {
-        self.cover_with(gpu, &[(self.bind(gpu, resources), None)], wgpu::Color::BLACK, target, timing);
+        let load = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
+        self.cover_with(gpu, &[(self.bind(gpu, resources), None)], load, target, timing);
     }
 
     /// Draws over rectangles of a target, columns and rows, each with resources of its own, in one pass. What is beside them all is
@@ -82,20 +87,32 @@ impl Draw {
         };
         let parts: Vec<_> =
             parts.iter().filter(|(sides, _)| !sides.iter().any(Range::is_empty)).map(bound).collect();
-        self.cover_with(gpu, &parts, beside, target, timing);
+        self.cover_with(gpu, &parts, wgpu::LoadOp::Clear(beside), target, timing);
+    }
+
+    /// Draws over a rectangle of a target, in a pass of its own, and hands it in. What is beside it is cleared, or stays.
+    pub fn cover_part(
+        &self,
+        gpu: &Gpu,
+        bind_group: &wgpu::BindGroup,
+        rectangle: [Range<u32>; 2],
+        load: wgpu::LoadOp<wgpu::Color>,
+        target: &wgpu::TextureView,
+        timing: Option<wgpu::RenderPassTimestampWrites>,
+    ) {
+        self.cover_with(gpu, &[(bind_group.clone(), Some(rectangle))], load, target, timing);
     }
 
     fn cover_with(
         &self,
         gpu: &Gpu,
         parts: &[(wgpu::BindGroup, Option<[Range<u32>; 2]>)],
-        beside: wgpu::Color,
+        load: wgpu::LoadOp<wgpu::Color>,
         target: &wgpu::TextureView,
         timing: Option<wgpu::RenderPassTimestampWrites>,
     ) {
         let label = Some(self.label);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
-        let load = wgpu::LoadOp::Clear(beside);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label,
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {

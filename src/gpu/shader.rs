@@ -42,6 +42,7 @@ sources! {
     "phase" => "shared/phase.wgsl",
     "preclassify" => "preclassify.wgsl",
     "raycast" => "raycast.wgsl",
+    "raycast_parts" => "raycast_parts.wgsl",
     "sampling_adaptive" => "shared/sampling_adaptive.wgsl",
     "sampling_uniform" => "shared/sampling_uniform.wgsl",
     "scattered_light" => "scattered_light.wgsl",

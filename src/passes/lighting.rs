@@ -80,6 +80,21 @@ impl Kinds {
         }
     }
 
+    /// Lights that volumes which scatter go through one by one.
+    pub fn lights(&self) -> u64 {
+        u64::from(self.lights)
+    }
+
+    /// Iterations of loops that it takes to light a sample, at most, where a normal and the depth of a light take so many.
+    pub fn loops(&self, all_lights: u64, normal: u64, light: u64) -> u64 {
+        let normal = if self.gradient || self.highlights { normal } else { 0 };
+        let gradient = if self.gradient { all_lights + 1 } else { 0 };
+        let scattering = if self.scattering { self.lights() * (1 + light) + 1 } else { 0 };
+        // The loop that looks for samples to light together.
+        let together = u64::from(self.lit);
+        together + normal + gradient.max(scattering)
+    }
+
     /// The WGSL module `lighting`.
     pub fn module(&self) -> (&'static str, String) {
         let constants = [

@@ -6,6 +6,7 @@
 //! The length is measured in the scene, where the camera plays no part.
 
 use super::classify::Classified;
+use super::raycast::parts;
 use crate::components::{Classification, Placement, RayCast, SceneSettings};
 use crate::gpu::{Gpu, texture_of};
 use crate::loading::LoadedVolume;
@@ -13,7 +14,7 @@ use crate::optics::preintegration::Preintegration;
 use crate::optics::transfer::{Layer, LookupTable};
 use crate::report::Report;
 use bevy_ecs::prelude::*;
-use glam::{DVec3, UVec2, Vec4};
+use glam::{DMat3, DVec3, UVec2, Vec4};
 use std::time::Instant;
 
 /// The pre-integrated table of a volume.
@@ -91,9 +92,10 @@ fn segment_length(
     settings: &SceneSettings,
 ) -> f64 {
     let voxel = volume.data.spacing.as_dvec3() / f64::from(settings.millimetres_per_unit);
-    let axes = placement.0.matrix3;
-    let lengths = DVec3::new(axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length()) * voxel;
-    lengths.min_element() * f64::from(ray_cast.step)
+    let axes = placement.0.matrix3 * DMat3::from_diagonal(voxel);
+    let lengths = DVec3::new(axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length());
+    let whole = axes * DMat3::from_diagonal(DVec3::from(volume.data.size.map(f64::from)));
+    (lengths.min_element() * f64::from(ray_cast.step)).max(parts::longest(whole) / parts::MOST_SEGMENTS)
 }
 
 fn upload(gpu: &Gpu, pairs: &Preintegration, table: &LookupTable) -> wgpu::TextureView {

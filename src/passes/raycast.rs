@@ -2,9 +2,11 @@
 //!
 //! Reads volume textures, lookup tables, brick distances and the surface; writes [`RayCaster::radiance`], rgba32float, one texel a
 //! pixel: radiance, and how many samples it took. Runs each frame in which a volume is there. The shader is made for the number of volumes,
-//! since each needs a texture binding of its own: their number is limited by what the adapter can bind at once.
+//! since each needs a texture binding of its own: their number is limited by what the adapter can bind at once. Rays that take more than one
+//! invocation may do are cast in several draws, see [`parts`].
 
 mod instance;
+pub(crate) mod parts;
 mod pipeline;
 mod tables;
 
@@ -27,7 +29,7 @@ use crate::components::{
 use crate::failure::Failure;
 use crate::gpu::{Draw, Gpu, GpuError, PassTimer, Target, texture_of, uniform_array};
 use crate::loading::LoadedVolume;
-use crate::scene::{Problem, Problems};
+use crate::scene::{EntityProblems, Problem, Problems};
 use crate::view::{
     Coarseness, Comparison, CutOut, FAR, FrameBuffers, Part, Picture, Pixels, View, background, covered,
     in_parts, is_wanted,
@@ -39,9 +41,12 @@ use bevy_ecs::query::QueryData;
 use glam::{UVec2, Vec3};
 pub(super) use instance::Lit;
 pub(crate) use instance::VolumeInstance;
-use instance::{instances, lit};
-pub(crate) use pipeline::{Scattered, classifications_module, scattered_module};
+use instance::{instances, lit, shortest_step, stretch};
+pub(crate) use parts::PartUniform;
+use parts::{Plan, Rays, Rectangles};
+pub(crate) use pipeline::{Scattered, classifications_module, parts_module, scattered_module};
 use pipeline::{Variant, make};
+use std::collections::BTreeMap;
 pub(crate) use tables::{BRICK_ROW, TABLE_ROW, table_texture};
 use tables::{Tables, tables, view_of};
 
@@ -60,8 +65,9 @@ impl Plugin for RayCastPlugin {
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct RayCaster {
-    /// The pipeline, and what it is made for.
-    draw: Option<(Variant, Draw)>,
+    /// The pipelines, and what they are made for: where one draw does all, and where rays are cast in parts.
+    draws: [Option<(Variant, Draw)>; 2],
+    rays: Rays,
     tables: Option<Tables>,
     target: Option<Target>,
     sampler: Option<wgpu::Sampler>,
@@ -104,6 +110,7 @@ pub(crate) struct VolumeQuery {
 type VolumeData<'a> = VolumeQueryItem<'a, 'a>;
 
 fn run(
+    mut commands: Commands,
     (gpu, frame, view, picture, settings): (
         Res<Gpu>,
         Res<FrameBuffers>,
@@ -120,7 +127,7 @@ fn run(
     volumes: Query<VolumeQuery>,
     surface: Res<Surface>,
     mut caster: ResMut<RayCaster>,
-    mut timer: Option<ResMut<PassTimer>>,
+    (mut timer, mut too_fine): (Option<ResMut<PassTimer>>, Local<BTreeMap<Entity, String>>),
     (mut report, mut failure, mut problems): (ResMut<Report>, ResMut<Failure>, ResMut<Problems>),
 ) {
     let mut volumes: Vec<_> = volumes.iter().collect();
@@ -138,25 +145,68 @@ fn run(
     let lit_in = |volume| parts.iter().map(|part| lit(volume, &settings, part.shading)).collect();
     let lights = frame.light_count.min(kept_lights.0 as u32);
     let kinds = Kinds::of(volumes.iter().map(lit_in).collect(), lights);
-    let drawn = prepare(&gpu, &picture, kinds, &volumes, &frame, &mut caster, &mut report).map(|()| {
-        let boxes =
-            volumes.iter().map(|volume| scene_from_texture(volume.loaded, volume.placement, &settings));
-        // Beside the volumes there is nothing but the background, unless there are meshes.
-        let pixels = match surface.colour() {
-            Some(_) => Pixels::all(picture.size),
-            None => covered(&view, picture.size, boxes),
-        };
-        let starts = caster.tables.as_ref().map(|tables| tables.starts.as_slice()).unwrap_or_default();
-        let of_part = |Part { columns, shading }: Part| {
-            let instances = instances((&view, &coarseness), &settings, &volumes, shading, starts);
-            (pixels.within(&columns), instances)
-        };
-        let parts: Vec<_> = parts.into_iter().map(of_part).collect();
-        let background = background(&settings, &cut_out);
-        draw(&gpu, &frame, background, &volumes, &parts, &surface, &caster, timing);
-        report.ran("raycast", &[("pixels", parts.iter().map(|(pixels, _)| pixels.count()).sum())]);
-    });
+    tell_too_fine(&mut commands, &view, &settings, &volumes, &mut too_fine);
+    let plan = |variant: &Variant| {
+        let stretches: Vec<_> =
+            volumes.iter().map(|volume| stretch((&view, &coarseness), &settings, volume)).collect();
+        Plan::new(&stretches, variant, frame.light_count)
+    };
+    let drawn =
+        prepare(&gpu, &picture, kinds, &volumes, &frame, plan, &mut caster, &mut report).and_then(|plan| {
+            let boxes =
+                volumes.iter().map(|volume| scene_from_texture(volume.loaded, volume.placement, &settings));
+            // Beside the volumes there is nothing but the background, unless there are meshes.
+            let pixels = match surface.colour() {
+                Some(_) => Pixels::all(picture.size),
+                None => covered(&view, picture.size, boxes),
+            };
+            let starts = caster.tables.as_ref().map(|tables| tables.starts.as_slice()).unwrap_or_default();
+            let of_part = |Part { columns, shading }: Part| {
+                let instances = instances((&view, &coarseness), &settings, &volumes, shading, starts);
+                (pixels.within(&columns), instances)
+            };
+            let parts: Vec<_> = parts.into_iter().map(of_part).collect();
+            let background = background(&settings, &cut_out);
+            draw(&gpu, &frame, background, &volumes, &parts, &surface, &mut caster, plan, timing)?;
+            let pixels = parts.iter().map(|(pixels, _)| pixels.count()).sum();
+            match plan.share {
+                None => report.ran("raycast", &[("pixels", pixels)]),
+                Some(_) => report.ran("raycast", &[("pixels", pixels), ("draws", plan.draws)]),
+            }
+            Ok(())
+        });
     failure.keep(drawn);
+}
+
+/// Tells of volumes whose step is so short beside their length that rays take a longer one.
+fn tell_too_fine(
+    commands: &mut Commands,
+    view: &View,
+    settings: &SceneSettings,
+    volumes: &[VolumeData],
+    told: &mut BTreeMap<Entity, String>,
+) {
+    let too_fine = volumes.iter().filter_map(|volume| {
+        let (wanted, shortest) = (volume.ray_cast.step, shortest_step(view, settings, volume));
+        (f64::from(wanted) < shortest).then(|| {
+            let most = parts::MOST_SEGMENTS;
+            let message = format!(
+                "a ray is cut into {most} segments at most: `step` is {shortest:.3e} voxels here rather than {wanted}, for the longest \
+                 diagonal of the volume is so much longer than a voxel's shortest edge"
+            );
+            (volume.entity, message)
+        })
+    });
+    let now: BTreeMap<Entity, String> = too_fine.collect();
+    for (entity, message) in now.iter().filter(|(entity, message)| told.get(entity) != Some(message)) {
+        let help = "check the `spacing` of the volume, or write a longer `step`";
+        let problem = Problem::note(message.clone()).help(help).on(*entity, "RayCast.step");
+        EntityProblems::set(commands, *entity, "raycast", vec![problem]);
+    }
+    for entity in told.keys().filter(|entity| !now.contains_key(*entity)) {
+        EntityProblems::set(commands, *entity, "raycast", Vec::new());
+    }
+    *told = now;
 }
 
 /// Textures that volumes and their light may have between them.
@@ -209,25 +259,39 @@ fn manner_of(volume: &VolumeData) -> Manner {
     Manner { classification, is_exact: volume.classified.table.is_exact, has_surfaces }
 }
 
-/// Makes what is missing or stale: pipeline, tables, target.
+/// Makes what is missing or stale: pipeline, tables, target. Answers how rays are cast.
+#[expect(clippy::too_many_arguments, reason = "what one draw depends on")]
 fn prepare(
     gpu: &Gpu,
     picture: &Picture,
     kinds: Kinds,
     volumes: &[VolumeData],
     frame: &FrameBuffers,
+    plan: impl Fn(&Variant) -> Plan,
     caster: &mut RayCaster,
     report: &mut Report,
-) -> Result<(), GpuError> {
+) -> Result<Plan, GpuError> {
     let readings =
         volumes.iter().map(|volume| Reading::of(volume.texture.format, &volume.classified)).collect();
     let light_volumes = shadows(volumes).iter().map(Option::is_some).collect();
     let scattered = volumes.iter().map(scattered_of).collect();
     let manners = volumes.iter().map(manner_of).collect();
     let light_capacity = frame.light_capacity;
-    let variant = Variant { readings, manners, light_capacity, kinds, light_volumes, scattered };
-    if caster.draw.as_ref().is_none_or(|(made_for, _)| *made_for != variant) {
-        caster.draw = Some((variant.clone(), make(gpu, &variant)?));
+    let mut variant = Variant {
+        readings,
+        manners,
+        light_capacity,
+        kinds,
+        light_volumes,
+        scattered,
+        light_filtering: lookup::filtering(gpu),
+        share: None,
+    };
+    let plan = plan(&variant);
+    variant.share = plan.share;
+    let known = &mut caster.draws[usize::from(plan.share.is_some())];
+    if known.as_ref().is_none_or(|(made_for, _)| *made_for != variant) {
+        *known = Some((variant.clone(), make(gpu, &variant)?));
         report.pipelines.push("raycast");
     }
     if caster.tables.as_ref().is_none_or(|tables| tables.starts.len() != volumes.len())
@@ -253,7 +317,7 @@ fn prepare(
         report.gpu_bytes.insert("raycast", target.bytes());
         caster.target = Some(target);
     }
-    Ok(())
+    Ok(plan)
 }
 
 /// The shadow on each of them.
@@ -278,19 +342,20 @@ fn draw(
     volumes: &[VolumeData],
     parts: &[(Pixels, Vec<VolumeInstance>)],
     surface: &Surface,
-    caster: &RayCaster,
+    caster: &mut RayCaster,
+    plan: Plan,
     timing: Option<wgpu::RenderPassTimestampWrites>,
-) {
-    let (Some((_, draw)), Some(tables), Some(target), Some(sampler)) =
-        (&caster.draw, &caster.tables, &caster.target, &caster.sampler)
-    else {
-        return;
+) -> Result<(), GpuError> {
+    let RayCaster { draws, rays, tables, target, sampler } = caster;
+    let draw = &draws[usize::from(plan.share.is_some())];
+    let (Some((_, draw)), Some(tables), Some(target), Some(sampler)) = (draw, tables, target, sampler) else {
+        return Ok(());
     };
     let instances_in = |(_, instances): &(_, Vec<VolumeInstance>)| {
         uniform_array(gpu, "volume instances", instances, instances.len())
     };
     let instances: Vec<_> = parts.iter().map(instances_in).collect();
-    let Some(first) = instances.first() else { return };
+    let Some(first) = instances.first() else { return Ok(()) };
     let (entries, distances) = (view_of(&tables.entries), view_of(&tables.distances));
     let far_away;
     let behind = match surface.colour() {
@@ -328,13 +393,21 @@ fn draw(
     });
     resources.extend(grids.map(|grid| wgpu::BindingResource::TextureView(&grid.view)));
     let mut bound = Vec::new();
-    for ((Pixels { columns, rows }, _), instances) in parts.iter().zip(&instances) {
+    for ((pixels, _), instances) in parts.iter().zip(&instances) {
         resources[INSTANCES] = instances.as_entire_binding();
-        bound.push(([columns.clone(), rows.clone()], resources.clone()));
+        bound.push((pixels.clone(), resources.clone()));
     }
     // The last number counts samples, or says what is hidden: neither there.
     let [r, g, b] = background.to_array().map(f64::from);
-    draw.cover_parts(gpu, &bound, wgpu::Color { r, g, b, a: 0.0 }, &target.view, timing);
+    let beside = wgpu::Color { r, g, b, a: 0.0 };
+    if plan.share.is_some() {
+        let rectangles = Rectangles { parts: bound, beside, target: &target.view };
+        return rays.draw(gpu, draw, (plan, volumes.len()), rectangles, timing);
+    }
+    let bound: Vec<_> =
+        bound.into_iter().map(|(Pixels { columns, rows }, resources)| ([columns, rows], resources)).collect();
+    draw.cover_parts(gpu, &bound, beside, &target.view, timing);
+    Ok(())
 }
 
 /// One texel that says: background, infinitely far away.

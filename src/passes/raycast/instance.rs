@@ -1,5 +1,6 @@
 //! A volume as the ray caster's shader knows it.
 
+use super::parts::{self, Stretch};
 use super::{VolumeData, classification_of};
 use crate::components::{Classification, SceneSettings, Shading, VolumeLighting};
 use crate::gpu::Texels;
@@ -8,7 +9,7 @@ use crate::optics::peak::Peak;
 use crate::passes::light_volume::{lighting_in_force, scene_from_texture};
 use crate::passes::lighting::{EMITS, GRADIENT, SCATTERS, SCATTERS_ONCE, SCATTERS_TOWARDS_EYE, UNLIT};
 use crate::view::{Coarseness, View};
-use glam::{DAffine3, DVec3, Mat4, UVec3, Vec3};
+use glam::{DAffine3, DMat3, DVec3, Mat4, UVec3, Vec3};
 
 mirror! {
     /// Mirror of `VolumeInstance` in `shaders/raycast.wgsl`.
@@ -67,6 +68,43 @@ pub fn instances(
     all
 }
 
+/// How much of a ray a volume takes at most.
+pub fn stretch(view: (&View, &Coarseness), settings: &SceneSettings, volume: &VolumeData) -> Stretch {
+    let scene_from_texture = scene_from_texture(volume.loaded, volume.placement, settings);
+    Stretch::new(
+        axes_in_eye(view.0, scene_from_texture),
+        step(view, volume, scene_from_texture),
+        volume.classified.bricks,
+    )
+}
+
+/// The shortest step of the rays through a volume, in voxels.
+pub fn shortest_step(view: &View, settings: &SceneSettings, volume: &VolumeData) -> f64 {
+    let axes = axes_in_eye(view, scene_from_texture(volume.loaded, volume.placement, settings));
+    parts::longest(axes) / parts::MOST_SEGMENTS / shortest_edge(axes, volume)
+}
+
+fn axes_in_eye(view: &View, scene_from_texture: DAffine3) -> DMat3 {
+    (view.eye_from_scene * scene_from_texture).matrix3
+}
+
+/// The shortest edge of a voxel.
+fn shortest_edge(axes: DMat3, volume: &VolumeData) -> f64 {
+    let size = DVec3::from(volume.loaded.data.size.map(f64::from));
+    (axes.x_axis.length() / size.x).min(axes.y_axis.length() / size.y).min(axes.z_axis.length() / size.z)
+}
+
+/// Length of a segment, eye space.
+fn step((view, coarseness): (&View, &Coarseness), volume: &VolumeData, scene_from_texture: DAffine3) -> f64 {
+    let axes = axes_in_eye(view, scene_from_texture);
+    let coarser = match classification_of(volume) {
+        Classification::PreIntegrated => 1.0,
+        _ => coarseness.step,
+    };
+    let wanted = shortest_edge(axes, volume) * f64::from(volume.ray_cast.step * coarser);
+    wanted.max(parts::longest(axes) / parts::MOST_SEGMENTS)
+}
+
 fn instance(
     (view, coarseness): (&View, &Coarseness),
     volume: &VolumeData,
@@ -77,20 +115,12 @@ fn instance(
 ) -> VolumeInstance {
     let VolumeData { loaded, classified, texture, ray_cast, voxels, summed, .. } = volume;
     let eye_from_texture = view.eye_from_scene * scene_from_texture;
-    let size = DVec3::from(loaded.data.size.map(f64::from));
-    let axes = eye_from_texture.matrix3;
-    let voxel =
-        (axes.x_axis.length() / size.x).min(axes.y_axis.length() / size.y).min(axes.z_axis.length() / size.z);
     let (lookup_scale, lookup_offset) = classified.lookup(texture.format);
     let [greatest_colour, greatest_extinction] = voxels.map_or([1.0; 2], |voxels| voxels.greatest);
-    let coarser = match classification_of(volume) {
-        Classification::PreIntegrated => 1.0,
-        _ => coarseness.step,
-    };
     VolumeInstance {
         texture_from_eye: glam::DMat4::from(eye_from_texture.inverse()).as_mat4(),
-        size: size.as_vec3(),
-        step: (voxel * f64::from(ray_cast.step * coarser)) as f32,
+        size: UVec3::from(loaded.data.size).as_vec3(),
+        step: step((view, coarseness), volume, scene_from_texture) as f32,
         lookup_scale,
         lookup_offset,
         table_entries: classified.table.entries.len() as u32,

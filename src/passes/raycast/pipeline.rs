@@ -1,7 +1,8 @@
 //! The ray caster's pipeline, and the modules of its shader that are made for what is in a scene.
 
 use super::FORMAT;
-use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, binding};
+use super::parts::{self, Share};
+use crate::gpu::{Draw, DrawDescriptor, Filtering, Gpu, GpuError, binding};
 use crate::passes::classification::Manner;
 use crate::passes::light_volume::lookup;
 use crate::passes::lighting::Kinds;
@@ -24,6 +25,10 @@ pub struct Variant {
     pub light_volumes: Vec<bool>,
     /// What scattered light each volume has.
     pub scattered: Vec<Scattered>,
+    /// Who interpolates light volumes.
+    pub light_filtering: Filtering,
+    /// How rays are shared out over draws, where one is not enough.
+    pub share: Option<Share>,
 }
 
 /// Bindings of the shader in front of the volume textures.
@@ -41,7 +46,8 @@ pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
         binding::SAMPLER,
     ];
     let textures = variant.readings.iter().map(|reading| reading.binding());
-    let light_volumes = lookup::bindings(variant.light_volumes.len(), lookup::filtering(gpu));
+    let filtering = variant.light_filtering;
+    let light_volumes = lookup::bindings(variant.light_volumes.len(), filtering);
     let shadows = volume_shadow::bindings(&variant.light_volumes);
     let scattered: usize = variant.scattered.iter().map(|scattered| scattered.textures()).sum();
     let scattered = std::iter::repeat_n(binding::texture(wgpu::TextureViewDimension::D3, true), scattered);
@@ -50,7 +56,7 @@ pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
     let first_classified = first_shadow + shadows.len();
     let classified = classification::bindings(&variant.manners);
     let first_scattered = first_classified + classified.len();
-    let bindings: Vec<_> = fixed
+    let mut bindings: Vec<_> = fixed
         .into_iter()
         .chain(textures)
         .chain(light_volumes)
@@ -58,26 +64,40 @@ pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
         .chain(classified)
         .chain(scattered)
         .collect();
+    let parts = parts::module(variant.share, bindings.len());
+    let (name, fragment) = match variant.share {
+        None => ("raycast", "march"),
+        Some(_) => ("raycast_parts", "march_on"),
+    };
+    if variant.share.is_some() {
+        bindings.extend([binding::UNIFORM, binding::STORAGE_OUT]);
+    }
     Draw::new(
         gpu,
         &DrawDescriptor {
-            name: "raycast",
+            name,
             generated: &[
+                parts,
                 ("volumes", voxels::module(&variant.readings, FIXED_BINDINGS)),
                 variant.kinds.module(),
                 classifications_module(&variant.manners, first_classified),
                 lights_module(variant.light_capacity),
-                lookup::light_volumes_module(variant.light_volumes.len(), lookup::filtering(gpu), first),
+                lookup::light_volumes_module(variant.light_volumes.len(), filtering, first),
                 volume_shadow::module(&variant.light_volumes, first_shadow),
                 scattered_module(&variant.scattered, first_scattered),
             ],
-            entry_points: ("cover", "march"),
+            entry_points: ("cover", fragment),
             bindings: &bindings,
             vertex_buffers: &[],
             format: FORMAT,
             depth: false,
         },
     )
+}
+
+/// The WGSL module `parts` of a shader that casts rays in parts, as an example.
+pub(crate) fn parts_module(binding: usize) -> (&'static str, String) {
+    parts::module(Some(Share::default()), binding)
 }
 
 /// The WGSL module `classifications`, whose textures are bound behind all others.
