@@ -220,3 +220,22 @@ fn the_odd_files_give_numbers_or_reasons() {
     let refused = files.iter().filter(|file| try_file(&mut studio, file)).count();
     assert!((5..files.len() / 2).contains(&refused), "{refused} of {} refused", files.len());
 }
+
+/// Adapters that end long loops without a word must not show: as many candidates as can be written give the light that fewer give.
+#[needs(gpu)]
+#[test]
+fn as_many_candidates_as_can_be_written_give_the_same_light() {
+    let mut studio = Studio::new();
+    let mut mean = |candidates: u32| {
+        let scene = format!(
+            "(entities: {{ \"sun\": ( DirectionalLight: (direction: (1.0, -1.0, -3.0), irradiance: (3.0, 3.0, 3.0)) ),
+                \"m\": ( Mesh: Sphere(subdivisions: 3), Subsurface: (),
+                    ScatteringMaps: (strategy: Uniform, cameras: 2, samples: 512, candidates: {candidates}, resolution: Texels(16, 16)) ) }})"
+        );
+        let pixels = studio.radiance(&scene, 32, 32);
+        assert_eq!(complaint(&pixels), None);
+        pixels.iter().flatten().sum::<f32>() / (3 * pixels.len()) as f32
+    };
+    let (some, all) = (mean(2500), mean(4096));
+    assert!(some > 0.05 && (all / some - 1.0).abs() < 0.05, "{all} with 4096 candidates, {some} with 2500");
+}
