@@ -17,6 +17,7 @@
 #import volumes
 #import lighting
 #import light_volumes
+#import first_sweeps
 #import scattered
 #import shadows
 #import classify
@@ -56,8 +57,6 @@ struct VolumeInstance {
     g: f32,
     // Share of the colour that is emitted by a volume that scatters.
     emission: f32,
-    // Light volume of the first light.
-    first_sweep: u32,
     // Fluence = texel * this.
     fluence_scale: f32,
     // The greatest of the phase function beside its peak.
@@ -261,8 +260,8 @@ fn scatter(index: u32, volume: VolumeInstance, sample: Sample, ray: Ray, ways: a
         normal = normal_at(index, volume, place, ray);
     }
     for (var i = 0u; i < LIGHTS; i += 1u) {
-        let depth = light_depth_on(volume.first_sweep + i, ways[i], sample.along);
-        let light = lights[i].irradiance * light_seen(volume.first_sweep + i, place);
+        let depth = light_depth_on(first_sweep(index) + i, ways[i], sample.along);
+        let light = lights[i].irradiance * light_seen(first_sweep(index) + i, place);
         if ANY_LEANING {
             let phase = min(henyey_greenstein(-lights[i].to_light, -ray.direction, volume.g), cap);
             let extinction = select(vec3f(1.0), beam_extinction(albedo, volume.g), is_often);
@@ -569,7 +568,7 @@ fn take_turn(
     let way = way_of(turn.index, volume, ray, march.enter, march.leave);
     var ways: array<LightWay, LIGHT_WAYS>;
     for (var i = 0u; i < LIGHTS; i += 1u) {
-        ways[i] = light_way(volume.first_sweep + i, way.start, way.direction);
+        ways[i] = light_way(first_sweep(turn.index) + i, way.start, way.direction);
     }
     // Segments before the next volume's turn comes: no more than there are, and at least one, whatever rounding says.
     var done = march.done;

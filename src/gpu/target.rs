@@ -32,6 +32,25 @@ impl Target {
         Ok(Self { view: texture.create_view(&Default::default()), texture })
     }
 
+    /// The same target to draw into again if it fits, or another. What was in it is gone.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::new`].
+    pub fn again(
+        former: Option<Self>,
+        gpu: &Gpu,
+        label: &str,
+        size: UVec2,
+        format: wgpu::TextureFormat,
+    ) -> Result<Self, GpuError> {
+        let fits = |target: &Self| {
+            let texture = &target.texture;
+            (texture.width(), texture.height(), texture.format()) == (size.x, size.y, format)
+        };
+        former.filter(fits).map_or_else(|| Self::new(gpu, label, size, format), Ok)
+    }
+
     /// Bytes that the texels take.
     pub fn bytes(&self) -> u64 {
         let texel = u64::from(self.texture.format().block_copy_size(None).unwrap_or(4));

@@ -3,7 +3,7 @@
 use super::body::Body;
 use super::upload::MeshBuffers;
 use crate::components::Placement;
-use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, binding, uniform_each};
+use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, Target, binding, uniform_each};
 use crate::loading::{LoadedMesh, placed_corners};
 use crate::view::normal_matrix;
 use crate::{mirrors::mirror, report::Report};
@@ -105,10 +105,11 @@ mirror! {
 /// Format of a G-buffer: normal in the view's space, height towards the viewer.
 pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
-/// The pipeline that draws them.
+/// The pipeline that draws them, and the depth that they were last drawn with.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct Gbuffer {
     draw: Option<Draw>,
+    depth: Option<Target>,
 }
 
 /// A mesh that is drawn: where it is in the body's space, and whether it is the body itself.
@@ -147,10 +148,12 @@ impl Gbuffer {
         view: &OrthographicView,
         top: f64,
         meshes: &[Seen],
-        (colour, depth): (&wgpu::TextureView, &wgpu::TextureView),
+        colour: &wgpu::TextureView,
         timing: Option<wgpu::RenderPassTimestampWrites>,
         report: &mut Report,
     ) -> Result<u64, GpuError> {
+        let format = wgpu::TextureFormat::Depth32Float;
+        let depth = Target::again(self.depth.take(), gpu, "gbuffer depth", view.size, format)?;
         let draw = self.pipeline(gpu, report)?;
         let uniforms: Vec<_> = meshes.iter().map(|mesh| uniform(view, top, mesh)).collect();
         let (buffer, stride) = uniform_each(gpu, "seen meshes", &uniforms);
@@ -159,7 +162,7 @@ impl Gbuffer {
         let bind_group = draw.bind(gpu, &[binding]);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let clear = wgpu::Color::TRANSPARENT;
-        let mut pass = crate::gpu::begin(&mut encoder, label, clear, colour, depth, timing);
+        let mut pass = crate::gpu::begin(&mut encoder, label, clear, colour, &depth.view, timing);
         let mut triangles = 0;
         for (index, (mesh, ..)) in meshes.iter().enumerate() {
             draw.begin(&mut pass, &bind_group, &[index as u32 * stride]);
@@ -168,6 +171,7 @@ impl Gbuffer {
         }
         drop(pass);
         gpu.queue.submit([encoder.finish()]);
+        self.depth = Some(depth);
         Ok(triangles)
     }
 }

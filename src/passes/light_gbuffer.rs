@@ -130,14 +130,18 @@ pub(crate) fn run(
             let view = index.map(|index| old.swap_remove(index));
             let is_full = view.as_ref().is_some_and(|view| view.recipe == recipe);
             recipe.texels = coarse;
-            if let Some(view) = view.filter(|view| is_full || view.recipe == recipe) {
-                held += view.target.bytes();
-                kept.0.push(view);
-                continue;
-            }
+            let former = match view {
+                Some(view) if is_full || view.recipe == recipe => {
+                    held += view.target.bytes();
+                    kept.0.push(view);
+                    continue;
+                }
+                other => other,
+            };
+            let former = former.map(|view| view.target);
             let drawn = || {
                 let timing = timer.as_mut().and_then(|timer| timer.time("light_gbuffer"));
-                let (view, target) = draw(&gpu, &mut gbuffer, mesh, &recipe, timing, &mut report)?;
+                let (view, target) = draw(&gpu, &mut gbuffer, mesh, &recipe, former, timing, &mut report)?;
                 let scene_from_view = (view.view_from_body * body.body_from_scene).inverse();
                 let timer = timer.as_deref_mut();
                 dim(&gpu, &mut dimmer, target, &view, scene_from_view, &veils, timer, &mut report)
@@ -192,19 +196,18 @@ fn draw(
     gbuffer: &mut Gbuffer,
     mesh: &LoadedMesh,
     recipe: &Recipe,
+    former: Option<Target>,
     timing: Option<wgpu::RenderPassTimestampWrites>,
     report: &mut Report,
 ) -> Result<(OrthographicView, Target), GpuError> {
     let Recipe { to_light, texels, body, mesh: buffers, blockers, .. } = recipe;
     let view = OrthographicView::fitted(body, mesh, *to_light, Fit::Longer(*texels));
-    let target = Target::new(gpu, "light_gbuffer", view.size, FORMAT)?;
-    let depth = Target::new(gpu, "light_gbuffer depth", view.size, wgpu::TextureFormat::Depth32Float)?;
+    let target = Target::again(former, gpu, "light_gbuffer", view.size, FORMAT)?;
     let top = blockers.iter().map(|blocker| blocker.top).fold(view.high.z, f64::max);
     let mut seen = vec![(buffers, body.body_from_mesh, true)];
     let from_scene = |blocker: &Blocker| body.body_from_scene * blocker.placement.0;
     seen.extend(blockers.iter().map(|blocker| (&blocker.mesh, from_scene(blocker), false)));
-    let onto = (&target.view, &depth.view);
-    let triangles = gbuffer.draw(gpu, "light_gbuffer", &view, top, &seen, onto, timing, report)?;
+    let triangles = gbuffer.draw(gpu, "light_gbuffer", &view, top, &seen, &target.view, timing, report)?;
     let work = [("texels", u64::from(view.size.element_product())), ("triangles", triangles)];
     report.ran("light_gbuffer", &work);
     Ok((view, target))

@@ -27,7 +27,7 @@ use crate::components::{
     Classification, Placement, RayCast as RayCastSettings, SceneSettings, Shading, VolumeLighting,
 };
 use crate::failure::Failure;
-use crate::gpu::{Draw, Gpu, GpuError, PassTimer, Target, texture_of, uniform_array};
+use crate::gpu::{Draw, Gpu, GpuError, PassTimer, Recent, Target, texture_of, uniform_array};
 use crate::loading::LoadedVolume;
 use crate::scene::{EntityProblems, Problem, Problems};
 use crate::view::{
@@ -44,7 +44,7 @@ pub(crate) use instance::VolumeInstance;
 use instance::{instances, lit, shortest_step, stretch};
 pub(crate) use parts::PartUniform;
 use parts::{Plan, Rays, Rectangles};
-pub(crate) use pipeline::{Scattered, classifications_module, parts_module, scattered_module};
+pub(crate) use pipeline::{Scattered, classifications_module, parts_module, scattered_module, sweeps_module};
 use pipeline::{Variant, make};
 use std::collections::BTreeMap;
 pub(crate) use tables::{BRICK_ROW, TABLE_ROW, table_texture};
@@ -65,8 +65,8 @@ impl Plugin for RayCastPlugin {
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct RayCaster {
-    /// The pipelines, and what they are made for: where one draw does all, and where rays are cast in parts.
-    draws: [Option<(Variant, Draw)>; 2],
+    /// The pipelines, by what they are made for.
+    draws: Recent<Variant, Draw>,
     rays: Rays,
     tables: Option<Tables>,
     target: Option<Target>,
@@ -274,6 +274,8 @@ fn prepare(
     let readings =
         volumes.iter().map(|volume| Reading::of(volume.texture.format, &volume.classified)).collect();
     let light_volumes = shadows(volumes).iter().map(Option::is_some).collect();
+    let lights_of = |volume: &VolumeData| volume.light_volumes.map_or(0, |own| own.0.len() as u32);
+    let light_counts = volumes.iter().map(lights_of).collect();
     let scattered = volumes.iter().map(scattered_of).collect();
     let manners = volumes.iter().map(manner_of).collect();
     let light_capacity = frame.light_capacity;
@@ -283,17 +285,17 @@ fn prepare(
         light_capacity,
         kinds,
         light_volumes,
+        light_counts,
         scattered,
         light_filtering: lookup::filtering(gpu),
         share: None,
     };
     let plan = plan(&variant);
     variant.share = plan.share;
-    let known = &mut caster.draws[usize::from(plan.share.is_some())];
-    if known.as_ref().is_none_or(|(made_for, _)| *made_for != variant) {
-        *known = Some((variant.clone(), make(gpu, &variant)?));
+    caster.draws.get(variant, |variant| {
         report.pipelines.push("raycast");
-    }
+        make(gpu, variant)
+    })?;
     if caster.tables.as_ref().is_none_or(|tables| tables.starts.len() != volumes.len())
         || volumes.iter().any(|volume| volume.classified.is_changed())
     {
@@ -347,8 +349,8 @@ fn draw(
     timing: Option<wgpu::RenderPassTimestampWrites>,
 ) -> Result<(), GpuError> {
     let RayCaster { draws, rays, tables, target, sampler } = caster;
-    let draw = &draws[usize::from(plan.share.is_some())];
-    let (Some((_, draw)), Some(tables), Some(target), Some(sampler)) = (draw, tables, target, sampler) else {
+    let (Some(draw), Some(tables), Some(target), Some(sampler)) = (draws.last(), tables, target, sampler)
+    else {
         return Ok(());
     };
     let instances_in = |(_, instances): &(_, Vec<VolumeInstance>)| {

@@ -13,7 +13,7 @@ use super::surface_points::SurfacePoints;
 use super::upload::MeshBuffers;
 use crate::components::{Auto, MapResolution, MapStrategy, ScatteringCameras, ScatteringMaps};
 use crate::failure::Failure;
-use crate::gpu::{Gpu, GpuError, Layers, PassTimer, Target};
+use crate::gpu::{Gpu, GpuError, Layers, PassTimer};
 use crate::loading::LoadedMesh;
 use crate::report::Report;
 use crate::scene::{Problem, Problems};
@@ -196,7 +196,6 @@ pub(crate) fn build(
     let directions: Vec<DVec3> = recipe.by_hand.iter().copied().chain(turned).collect();
     let Recipe { body, size, .. } = &recipe;
     let layers = Layers::new(gpu, "scattering_gbuffer", *size, directions.len() as u32);
-    let depth = Target::new(gpu, "scattering_gbuffer depth", *size, wgpu::TextureFormat::Depth32Float)?;
     let views: Vec<OrthographicView> = directions
         .iter()
         .map(|towards| OrthographicView::fitted(body, mesh, *towards, Fit::Whole(*size)))
@@ -205,9 +204,9 @@ pub(crate) fn build(
     for (layer, view) in views.iter().enumerate() {
         let timing = timer.as_mut().and_then(|timer| timer.time("scattering_gbuffer"));
         let seen = [(&recipe.mesh, body.body_from_mesh, true)];
-        let onto = (&layers.layer(layer as u32), &depth.view);
+        let onto = layers.layer(layer as u32);
         triangles +=
-            gbuffer.draw(gpu, "scattering_gbuffer", view, view.high.z, &seen, onto, timing, report)?;
+            gbuffer.draw(gpu, "scattering_gbuffer", view, view.high.z, &seen, &onto, timing, report)?;
     }
     let texels = u64::from(size.element_product()) * views.len() as u64;
     report.ran("scattering_gbuffer", &[("texels", texels), ("triangles", triangles)]);

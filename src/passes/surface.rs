@@ -11,7 +11,9 @@ use super::surface_points::SurfacePoints;
 use super::upload::MeshBuffers;
 use crate::components::{Phong, Placement, SceneSettings, Shading as ShadingKind, Subsurface};
 use crate::failure::Failure;
-use crate::gpu::{Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Target, begin, binding, uniform_each};
+use crate::gpu::{
+    Draw, DrawDescriptor, Gpu, GpuError, PassTimer, Recent, Target, begin, binding, uniform_each,
+};
 use crate::view::{
     Comparison, CutOut, FAR, FrameBuffers, Part, Picture, View, background, in_parts, is_wanted,
     lights_module, to_eye,
@@ -36,9 +38,9 @@ impl Plugin for SurfacePlugin {
 /// What the pass keeps between frames.
 #[derive(Resource, Default, Debug)]
 pub(crate) struct Surface {
-    /// The pipelines, and what they are made for.
-    opaque: Option<(Variant, Draw)>,
-    translucent: Option<(Variant, Draw)>,
+    /// The pipelines, by what they are made for.
+    opaque: Recent<Variant, Draw>,
+    translucent: Recent<Variant, Draw>,
     targets: Option<Targets>,
 }
 
@@ -162,10 +164,10 @@ fn draw(
     let is_translucent = |mesh: &Drawn| mesh.radiosity.is_some();
     let variant = Variant { light_capacity: frame.light_capacity, veils: veils.count() };
     if drawn.iter().any(|mesh| !is_translucent(mesh)) {
-        make(gpu, &mut surface.opaque, variant, false, report)?;
+        surface.opaque.get(variant, |variant| make(gpu, *variant, false, report))?;
     }
     if drawn.iter().any(is_translucent) {
-        make(gpu, &mut surface.translucent, variant, true, report)?;
+        surface.translucent.get(variant, |variant| make(gpu, *variant, true, report))?;
     }
     let Some(targets) = &surface.targets else { return Ok(()) };
     let instances: Vec<MeshInstance> = drawn.iter().map(|mesh| mesh.instance.clone()).collect();
@@ -187,7 +189,7 @@ fn draw(
     for (pipeline, translucent) in [(&surface.opaque, false), (&surface.translucent, true)] {
         let mut own =
             drawn.iter().enumerate().filter(|(_, mesh)| is_translucent(mesh) == translucent).peekable();
-        let (Some((_, draw)), Some(_)) = (pipeline, own.peek()) else { continue };
+        let (Some(draw), Some(_)) = (pipeline.last(), own.peek()) else { continue };
         let bind_group = draw.bind(gpu, &resources);
         for (index, mesh) in own {
             draw.begin(&mut pass, &bind_group, &[index as u32 * stride]);
@@ -209,17 +211,8 @@ fn draw(
     Ok(())
 }
 
-/// Makes a pipeline, unless the one that is there serves.
-fn make(
-    gpu: &Gpu,
-    pipeline: &mut Option<(Variant, Draw)>,
-    variant: Variant,
-    translucent: bool,
-    report: &mut Report,
-) -> Result<(), GpuError> {
-    if pipeline.as_ref().is_some_and(|(made_for, _)| *made_for == variant) {
-        return Ok(());
-    }
+/// Makes a pipeline.
+fn make(gpu: &Gpu, variant: Variant, translucent: bool, report: &mut Report) -> Result<Draw, GpuError> {
     let vertices = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3];
     let radiosity = wgpu::vertex_attr_array![2 => Float32x4];
     let (entry_points, vertex_buffers): (_, &[&[wgpu::VertexAttribute]]) = match translucent {
@@ -239,9 +232,8 @@ fn make(
         format: FORMAT,
         depth: true,
     };
-    *pipeline = Some((variant, Draw::new(gpu, &descriptor)?));
     report.pipelines.push("surface");
-    Ok(())
+    Draw::new(gpu, &descriptor)
 }
 
 fn resize(gpu: &Gpu, surface: &mut Surface, picture: &Picture, report: &mut Report) -> Result<(), GpuError> {

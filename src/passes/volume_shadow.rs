@@ -97,14 +97,19 @@ pub(crate) fn run(
             let recipe = Recipe::of(loaded, placement, &settings, to_light, entity, &meshes);
             let Some(recipe) = recipe.filter(|_| settings.meshes_shade_volumes) else { continue };
             let found = old.iter().position(|shadow| shadow.light == light);
-            let found = found.map(|index| old.swap_remove(index)).filter(|found| found.recipe == recipe);
-            if let Some(found) = found {
-                held += found.target.bytes();
-                all.0.push(found);
-                continue;
-            }
+            let found = found.map(|index| old.swap_remove(index));
+            let former = match found {
+                Some(found) if found.recipe == recipe => {
+                    held += found.target.bytes();
+                    all.0.push(found);
+                    continue;
+                }
+                other => other.map(|found| found.target),
+            };
             let timing = timer.as_mut().and_then(|timer| timer.time("volume_shadow"));
-            match gpu.attempt("volume_shadow", || draw(&gpu, &mut gbuffer, &recipe, timing, &mut report)) {
+            match gpu
+                .attempt("volume_shadow", || draw(&gpu, &mut gbuffer, &recipe, former, timing, &mut report))
+            {
                 Ok(target) => {
                     version.0 += 1;
                     held += target.bytes();
@@ -154,17 +159,16 @@ fn draw(
     gpu: &Gpu,
     gbuffer: &mut Gbuffer,
     recipe: &Recipe,
+    former: Option<Target>,
     timing: Option<wgpu::RenderPassTimestampWrites>,
     report: &mut Report,
 ) -> Result<Target, GpuError> {
     let Recipe { body, view, blockers, .. } = recipe;
-    let target = Target::new(gpu, "volume_shadow", view.size, FORMAT)?;
-    let depth = Target::new(gpu, "volume_shadow depth", view.size, wgpu::TextureFormat::Depth32Float)?;
+    let target = Target::again(former, gpu, "volume_shadow", view.size, FORMAT)?;
     let top = blockers.iter().map(|blocker| blocker.top).fold(view.high.z, f64::max);
     let from_scene = |blocker: &Blocker| body.body_from_scene * blocker.placement.0;
     let seen: Vec<_> = blockers.iter().map(|blocker| (&blocker.mesh, from_scene(blocker), true)).collect();
-    let onto = (&target.view, &depth.view);
-    let triangles = gbuffer.draw(gpu, "volume_shadow", view, top, &seen, onto, timing, report)?;
+    let triangles = gbuffer.draw(gpu, "volume_shadow", view, top, &seen, &target.view, timing, report)?;
     let work = [("texels", u64::from(view.size.element_product())), ("triangles", triangles)];
     report.ran("volume_shadow", &work);
     Ok(target)

@@ -36,7 +36,6 @@ mirror! {
         reach: f32,
         g: f32,
         emission: f32,
-        first_sweep: u32,
         fluence_scale: f32,
         peak_cap: f32,
         greatest_colour: f32,
@@ -52,20 +51,11 @@ pub fn instances(
     shading: Shading,
     starts: &[[u32; 2]],
 ) -> Vec<VolumeInstance> {
-    let mut first_sweep = 0;
-    let mut all = Vec::new();
-    for (volume, start) in volumes.iter().zip(starts) {
-        all.push(instance(
-            view,
-            volume,
-            scene_from_texture(volume.loaded, volume.placement, settings),
-            lit(volume, settings, shading),
-            *start,
-            first_sweep,
-        ));
-        first_sweep += volume.light_volumes.map_or(0, |own| own.0.len() as u32);
-    }
-    all
+    let of_volume = |(volume, start): (&VolumeData, &[u32; 2])| {
+        let scene_from_texture = scene_from_texture(volume.loaded, volume.placement, settings);
+        instance(view, volume, scene_from_texture, lit(volume, settings, shading), *start)
+    };
+    volumes.iter().zip(starts).map(of_volume).collect()
 }
 
 /// How much of a ray a volume takes at most.
@@ -111,7 +101,6 @@ fn instance(
     scene_from_texture: DAffine3,
     lit: Lit,
     [bricks_start, table_row]: [u32; 2],
-    first_sweep: u32,
 ) -> VolumeInstance {
     let VolumeData { loaded, classified, texture, ray_cast, voxels, summed, .. } = volume;
     let eye_from_texture = view.eye_from_scene * scene_from_texture;
@@ -139,7 +128,6 @@ fn instance(
         reach: view.reach as f32,
         g: lit.g,
         emission: lit.emission,
-        first_sweep,
         fluence_scale: summed.map_or(0.0, |summed| summed.scale),
         peak_cap: Peak::new(f64::from(lit.g)).cap.min(f64::from(f32::MAX)) as f32,
         greatest_colour,

@@ -23,6 +23,8 @@ pub struct Variant {
     pub kinds: Kinds,
     /// For each light volume of all volumes together whether meshes shadow it.
     pub light_volumes: Vec<bool>,
+    /// How many of them are each volume's.
+    pub light_counts: Vec<u32>,
     /// What scattered light each volume has.
     pub scattered: Vec<Scattered>,
     /// Who interpolates light volumes.
@@ -80,6 +82,7 @@ pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
                 parts,
                 ("volumes", voxels::module(&variant.readings, FIXED_BINDINGS)),
                 variant.kinds.module(),
+                sweeps_module(&variant.light_counts),
                 classifications_module(&variant.manners, first_classified),
                 lights_module(variant.light_capacity),
                 lookup::light_volumes_module(variant.light_volumes.len(), filtering, first),
@@ -93,6 +96,22 @@ pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
             depth: false,
         },
     )
+}
+
+/// The WGSL module `first_sweeps`: which light volume is the first of each volume.
+///
+/// Not in a uniform: lavapipe compiles a shader anew for the values of uniforms that it branches on, whichever shadow is meant among them, and
+/// with them for others, which change from frame to frame; and it keeps all that it compiled.
+pub(crate) fn sweeps_module(counts: &[u32]) -> (&'static str, String) {
+    let mut text = String::from("fn first_sweep(volume: u32) -> u32 {\n    switch volume {\n");
+    let mut first = 0;
+    for (volume, count) in counts.iter().enumerate() {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "        case {volume}u: {{ return {first}u; }}");
+        first += count;
+    }
+    text.push_str("        default: { return 0u; }\n    }\n}\n");
+    ("first_sweeps", text)
 }
 
 /// The WGSL module `parts` of a shader that casts rays in parts, as an example.
