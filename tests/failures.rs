@@ -15,7 +15,7 @@ use std::path::Path;
 use support::Studio;
 use tyndall::Picture;
 use tyndall::components::{SceneSettings, VolumeLighting};
-use tyndall::gpu::{Gpu, GpuError, GpuOptions};
+use tyndall::gpu::{Gpu, GpuError, GpuOptions, buffer_of};
 use tyndall::render::{Pixels, render_what_is_there};
 use tyndall::report::Report;
 use tyndall::scene::{EntityProblems, SceneEntities};
@@ -65,6 +65,20 @@ fn what_the_driver_refuses_is_an_error_and_no_panic() {
     // Where nobody attempted it, the next to wait is told, once.
     too_large().unwrap();
     assert!(matches!(gpu.wait("waiting"), Err(GpuError::Driver { .. })));
+    assert!(gpu.wait("waiting").is_ok());
+}
+
+/// Contents for which there is no room must not be written to a buffer that was not made.
+#[needs(gpu)]
+#[test]
+fn contents_that_find_no_room_are_an_error_and_no_panic() {
+    let gpu = pollster::block_on(Gpu::new(&GpuOptions { portable: true })).unwrap();
+    let most = gpu.device.limits().max_buffer_size as usize;
+    let usage = wgpu::BufferUsages::VERTEX;
+    let uploaded = gpu.attempt("uploading", || Ok(buffer_of(&gpu, "vertices", &vec![0; most + 4], usage)));
+    assert!(matches!(uploaded, Err(GpuError::Driver { .. })), "{uploaded:?}");
+    let fits = gpu.attempt("uploading", || Ok(buffer_of(&gpu, "vertices", &[1, 2, 3, 4, 5], usage)));
+    assert_eq!(fits.unwrap().size(), 8);
     assert!(gpu.wait("waiting").is_ok());
 }
 

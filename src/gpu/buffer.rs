@@ -1,7 +1,6 @@
 use super::Gpu;
 use encase::internal::WriteInto;
 use encase::{ShaderSize, ShaderType, StorageBuffer, UniformBuffer};
-use wgpu::util::DeviceExt;
 
 /// A uniform buffer that holds `value` in WGSL's layout.
 pub fn uniform_buffer<T: ShaderType + WriteInto>(gpu: &Gpu, label: &str, value: &T) -> wgpu::Buffer {
@@ -75,11 +74,27 @@ pub fn storage_array<T: ShaderType + ShaderSize + WriteInto>(
 
 /// A storage buffer of these bytes, for kernels to read.
 pub fn storage_of(gpu: &Gpu, label: &str, contents: &[u8]) -> wgpu::Buffer {
-    let usage = wgpu::BufferUsages::STORAGE;
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+    buffer_of(gpu, label, contents, wgpu::BufferUsages::STORAGE)
+}
+
+/// A buffer of these bytes. Where the driver has no room for it, [`Gpu::attempt`] says so: the buffer is then one that nothing can be done with.
+pub fn buffer_of(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    let size = (contents.len() as u64).next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: size.max(wgpu::COPY_BUFFER_ALIGNMENT),
+        usage,
+        mapped_at_creation: true,
+    });
+    // `DeviceExt::create_buffer_init` does the same, but panics where there is nothing to write to.
+    if let Ok(mut mapped) = buffer.get_mapped_range_mut(..) {
+        mapped.slice(..contents.len()).copy_from_slice(contents);
+        drop(mapped);
+        buffer.unmap();
+    }
+    buffer
 }
 
 fn init(gpu: &Gpu, label: &str, contents: &[u8]) -> wgpu::Buffer {
-    let usage = wgpu::BufferUsages::UNIFORM;
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+    buffer_of(gpu, label, contents, wgpu::BufferUsages::UNIFORM)
 }

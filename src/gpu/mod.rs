@@ -14,7 +14,9 @@ pub mod shader;
 mod target;
 mod timer;
 
-pub use buffer::{storage, storage_array, storage_of, uniform_array, uniform_buffer, uniform_each};
+pub use buffer::{
+    buffer_of, storage, storage_array, storage_of, uniform_array, uniform_buffer, uniform_each,
+};
 pub use device::{Gpu, GpuOptions};
 pub use draw::{Draw, DrawDescriptor, binding};
 pub use error::GpuError;

@@ -2,7 +2,7 @@
 
 use crate::components::Subsurface;
 use crate::failure::Failure;
-use crate::gpu::{Gpu, GpuError, VolumeFormat};
+use crate::gpu::{Gpu, GpuError, VolumeFormat, buffer_of};
 use crate::loading::{LoadedMesh, LoadedVolume};
 use crate::scene::{EntityProblems, Problem};
 use crate::sources::volume::is_present;
@@ -12,7 +12,6 @@ use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
 use half::f16;
 use std::collections::HashSet;
-use wgpu::util::DeviceExt;
 
 /// Uploads meshes.
 pub(crate) struct MeshUploadPlugin;
@@ -57,8 +56,8 @@ impl MeshBuffers {
         let indices = bytemuck::cast_slice(&data.triangles);
         gpu.attempt("uploading a mesh", || {
             Ok(Self {
-                vertices: buffer(gpu, "vertices", bytemuck::cast_slice(&vertices), usage),
-                indices: buffer(gpu, "indices", indices, wgpu::BufferUsages::INDEX),
+                vertices: buffer_of(gpu, "vertices", bytemuck::cast_slice(&vertices), usage),
+                indices: buffer_of(gpu, "indices", indices, wgpu::BufferUsages::INDEX),
                 index_count: 3 * data.triangles.len() as u32,
             })
         })
@@ -140,10 +139,6 @@ fn mesh_too_large(data: &MeshData, bytes: u64, limit: u64) -> Problem {
         data.triangles.len()
     );
     Problem::error(message).help("simplify the mesh, or split it into several entities")
-}
-
-fn buffer(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
 }
 
 fn upload_volumes(
