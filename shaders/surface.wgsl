@@ -84,6 +84,14 @@ fn shade(in: Varyings) -> @location(0) vec4f {
     return vec4f(mesh.ambient + reflected(at, mesh.diffuse), at.distance);
 }
 
+// A place in the picture moved onto the grid of 1/256 of a pixel that rasterisers count in. Some decide by the place on the grid which pixels a triangle
+// covers, and interpolate in it as it was: across triangles that are narrower than that, what is found lies far beyond what their corners have.
+fn on_grid(clip: vec4f) -> vec4f {
+    let scale = 128.0 * frame.picture;
+    let place = round(clip.xy / clip.w * scale) / scale;
+    return select(clip, vec4f(place * clip.w, clip.zw), clip.w > 0.0);
+}
+
 struct TranslucentVaryings {
     @builtin(position) position_in_clip: vec4f,
     @location(0) position_in_eye: vec3f,
@@ -98,7 +106,7 @@ fn transform_translucent(
     @location(2) radiosity: vec4f,
 ) -> TranslucentVaryings {
     let out = transformed(position, normal);
-    return TranslucentVaryings(out.position_in_clip, out.position_in_eye, out.normal_in_eye, radiosity.xyz);
+    return TranslucentVaryings(on_grid(out.position_in_clip), out.position_in_eye, out.normal_in_eye, radiosity.xyz);
 }
 
 @fragment
@@ -107,7 +115,8 @@ fn shade_translucent(in: TranslucentVaryings) -> @location(0) vec4f {
     // Where an interpolated normal leans away from the eye, the facet that is seen does not: without a bound, outlines of coarse meshes
     // would be dotted with black.
     let leaves = fresnel_transmittance(max(abs(dot(at.normal, at.to_eye)), 0.1), mesh.eta);
-    var radiance = leaves * in.radiosity;
+    // What rounding leaves below 0 is about a millionth of what is beside it.
+    var radiance = leaves * max(in.radiosity, vec3f(0.0));
     if any(mesh.specular > vec3f(0.0)) {
         radiance += reflected(at, vec3f(0.0));
     }

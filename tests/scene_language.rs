@@ -259,6 +259,17 @@ fn a_medium_is_a_name_or_either_pair_of_coefficients() {
 }
 
 #[test]
+fn what_is_to_be_above_0_is_so_on_a_gpu() {
+    for (component, field) in [
+        ("Volume: Raw(path: \"v.raw\", size: (2, 2, 2), spacing: (1e-45, 1, 1))", "1e-45"),
+        ("TransferFunction: (opacity_length: 1e-40, points: [(0.0, (1, 1, 1), 0.5)])", "1e-40"),
+    ] {
+        let told_of = Files::scene(&format!("\"a\": ( {component} ),")).errors(&[]);
+        assert!(told_of.iter().any(|message| message.contains("at least 1.2e-38")), "{field}: {told_of:?}");
+    }
+}
+
+#[test]
 fn everything_about_scattering_can_be_written() {
     let app = Files::scene(
         r#""bunny": (

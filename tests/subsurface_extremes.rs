@@ -221,6 +221,18 @@ fn the_odd_files_give_numbers_or_reasons() {
     assert!((5..files.len() / 2).contains(&refused), "{refused} of {} refused", files.len());
 }
 
+/// Triangles narrower than the grid that rasterisers count in, with few samples at each of their corners.
+#[needs(gpu)]
+#[test]
+fn no_light_is_negative_on_triangles_narrower_than_pixels() {
+    let mut studio = Studio::new();
+    let scene = "(entities: { \"sun\": ( DirectionalLight: (direction: (1.0, -1.0, -3.0), irradiance: (3.0, 3.0, 3.0)) ),
+        \"m\": ( Mesh: Sphere(subdivisions: 8), Subsurface: (), ScatteringMaps: (samples: 1) ) })";
+    let pixels = studio.radiance(scene, 32, 32);
+    assert_eq!(complaint(&pixels), None);
+    assert!(pixels.iter().any(|pixel| pixel[0] > 0.1));
+}
+
 /// Adapters that end long loops without a word must not show: as many candidates as can be written give the light that fewer give.
 #[needs(gpu)]
 #[test]

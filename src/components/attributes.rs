@@ -41,11 +41,19 @@ impl Range {
     }
 
     /// Whether `value` is allowed. NaN never is. A bound that 32 bits do not hold exactly allows its 32-bit neighbour, which is what
-    /// a field of 32 bits has in its stead.
+    /// a field of 32 bits has in its stead. What is to be above 0 is at least [`LEAST_ABOVE_0`](Self::LEAST_ABOVE_0).
     pub fn contains(&self, value: f64) -> bool {
         let min = self.min.min(f64::from(self.min as f32));
         let max = self.max.max(f64::from(self.max as f32));
-        value <= max && if self.above_min { value > min } else { value >= min }
+        value <= max && if self.above_min { value > min && !self.counts_as_0(value) } else { value >= min }
+    }
+
+    /// The least number above 0 that a GPU tells from 0: 1.2e-38, the least normal number of 32 bits.
+    pub const LEAST_ABOVE_0: f64 = f32::MIN_POSITIVE as f64;
+
+    /// Whether a number that is to be above 0 is so close to it that a GPU takes it for 0.
+    pub(crate) fn counts_as_0(&self, value: f64) -> bool {
+        self.above_min && self.min == 0.0 && value > 0.0 && value < Self::LEAST_ABOVE_0
     }
 }
 

@@ -95,7 +95,13 @@ impl Number {
             return None;
         }
         let is_bounded = range.min > f64::MIN || range.max < f64::MAX;
-        let wanted = if is_bounded { range.to_string() } else { "a finite number".into() };
+        let wanted = match self {
+            _ if !is_bounded => "a finite number".into(),
+            _ if self.counts_as_0(&range) => {
+                format!("{range} (at least 1.2e-38: a GPU takes less for 0)")
+            }
+            _ => range.to_string(),
+        };
         Some(Refused { wanted, digits: self.digits() })
     }
 
@@ -108,9 +114,18 @@ impl Number {
             Self::Single(number) => number.is_finite() && range.contains(f64::from(number)),
             Self::Double(number) => {
                 let to = |bound: f64| number.partial_cmp(&bound).unwrap_or(Ordering::Greater);
-                number.is_finite() && is_between(to(range.min), to(range.max))
+                number.is_finite() && !range.counts_as_0(number) && is_between(to(range.min), to(range.max))
             }
             Self::Whole(number) => is_between(compare(number, range.min), compare(number, range.max)),
+        }
+    }
+
+    /// Whether it is above 0, as it is to be, but not on a GPU.
+    fn counts_as_0(self, range: &Range) -> bool {
+        match self {
+            Self::Single(number) => range.counts_as_0(f64::from(number)),
+            Self::Double(number) => range.counts_as_0(number),
+            Self::Whole(_) => false,
         }
     }
 
@@ -203,6 +218,22 @@ mod tests {
         assert_eq!(digits(&0.099_999_999_9_f64, &tenth).as_deref(), Some("0.0999999999"));
         assert_eq!(digits(&0_u8, &Range::positive()).as_deref(), Some("0"));
         assert_eq!(digits(&-0.0_f64, &Range::non_negative()), None, "it is 0");
+    }
+
+    #[test]
+    fn what_a_gpu_takes_for_0_is_not_above_0() {
+        let least = f32::MIN_POSITIVE;
+        for fine in [&least as &dyn Reflect, &f64::from(least), &1_u8] {
+            assert_eq!(refused(fine.as_partial_reflect(), Some(&Range::positive())), None, "{fine:?}");
+        }
+        for tiny in [&1e-45_f32 as &dyn Reflect, &1e-39_f32, &1e-39_f64, &Vec4::new(1.0, 1.0, 1e-39, 1.0)] {
+            let told = refused(tiny.as_partial_reflect(), Some(&Range::positive())).unwrap().wanted;
+            assert!(told.starts_with("above 0") && told.contains("1.2e-38"), "{told}");
+        }
+        // What may be 0 may be taken for 0, and where 0 itself is refused, so is what has the wrong sign.
+        assert_eq!(digits(&1e-45_f32, &Range::non_negative()), None);
+        let told = refused(&-1e-45_f32, Some(&Range::positive())).unwrap().wanted;
+        assert_eq!(told, "above 0");
     }
 
     #[test]
