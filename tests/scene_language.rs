@@ -259,6 +259,38 @@ fn a_medium_is_a_name_or_either_pair_of_coefficients() {
 }
 
 #[test]
+fn how_light_is_scattered_can_be_written_beside_a_preset() {
+    let app = Files::scene(
+        r#"
+        "skin": ( Subsurface: (material: Preset("skin"), g: 0.75) ),
+        "straight on": ( Subsurface: (material: Preset("skin"), g: Some(1.0)) ),
+        "straight back": ( Subsurface: (material: Custom(sigma_a: (1, 1, 1), sigma_s: (2, 2, 2), g: -1.0)) ),"#,
+    )
+    .load(&[]);
+    let plain = Material::Preset("skin".into()).coefficients().unwrap();
+    let leaning = get::<Subsurface>(&app, "skin").coefficients().unwrap();
+    for (plain, leaning) in plain.into_iter().zip(leaning) {
+        assert_eq!((plain.g, leaning.g, leaning.sigma_a), (0.0, 0.75, plain.sigma_a));
+        assert!((leaning.sigma_s - 4.0 * plain.sigma_s).abs() < 1e-9 * leaning.sigma_s);
+        let (one, other) = (plain.diffusion(), leaning.diffusion());
+        assert!((one.sigma_t_prime - other.sigma_t_prime).abs() < 1e-9 * one.sigma_t_prime);
+    }
+    let straight = get::<Subsurface>(&app, "straight on").coefficients().unwrap();
+    assert!(
+        straight.iter().all(|medium| medium.sigma_s.is_finite() && medium.diffusion().sigma_s_prime > 0.0)
+    );
+    assert_eq!(get::<Subsurface>(&app, "straight back").coefficients().unwrap()[0].g, -1.0);
+    for (text, told) in [
+        ("material: Custom(sigma_a: (1, 1, 1), sigma_s: (2, 2, 2)), g: 0.5", "write `Custom(…, g: 0.5)`"),
+        ("material: Preset(\"skin\"), g: 1.01", "from -1 to 1"),
+        ("material: Custom(sigma_a: (1, 1, 1), sigma_s: (2, 2, 2), g: -1.01)", "from -1 to 1"),
+    ] {
+        let told_of = Files::scene(&format!("\"a\": ( Subsurface: ({text}) ),")).errors(&[]);
+        assert!(told_of.iter().any(|message| message.contains(told)), "{text}: {told_of:?}");
+    }
+}
+
+#[test]
 fn what_is_to_be_above_0_is_so_on_a_gpu() {
     for (component, field) in [
         ("Volume: Raw(path: \"v.raw\", size: (2, 2, 2), spacing: (1e-45, 1, 1))", "1e-45"),
@@ -288,6 +320,7 @@ fn everything_about_scattering_can_be_written() {
     .load(&[]);
     let bunny = Subsurface {
         material: Material::Preset("skin".into()),
+        g: None,
         model: DipoleModel::DirectionalDipole,
         specular: Some(Specular { strength: 0.5, shininess: 8.0 }),
         local: Phong { shininess: 4.0, ..Phong::default() },

@@ -47,7 +47,7 @@ fn any_medium_gives_numbers() {
     let coefficients = [0.0, 1e-6, 1e-3, 1.0, 1e3, 1e6];
     for (i, sigma_a) in coefficients.into_iter().enumerate() {
         for (j, sigma_s) in coefficients.into_iter().enumerate() {
-            for (k, g) in [-0.999, 0.0, 0.999].into_iter().enumerate() {
+            for (k, g) in [-1.0, -0.999, 0.0, 0.999, 1.0].into_iter().enumerate() {
                 // Every combination of three with four indices would be too many: each meets all others sometime.
                 let eta = [0.5, 1.0, 1.3, 3.0][(i + 2 * j + k) % 4];
                 let model = MODELS[(i + j + k) % 3];

@@ -12,12 +12,18 @@ use glam::Vec3;
 /// | field | type | range | default |
 /// |---|---|---|---|
 /// | `material` | a [`Material`]: `Preset(name)` or `Custom(coefficients)`, per mm | – | `Preset("marble")` |
+/// | `g` | `None`, or the mean cosine of scattering of a `Preset` | -1 to 1 | `None` |
 /// | `model` | `CalibratedDipole`, `DirectionalDipole` or `StandardDipole` | – | `CalibratedDipole` |
 /// | `specular` | `None`, or `(strength, shininess)` of a white highlight on the surface | 0 to 1; 0 to 10,000 | `None` |
 /// | `local` | [`Phong`]: the look while [`Shading`](super::Shading) is `Local` | as in `Phong` | `()` |
 ///
 /// It belongs beside a [`Mesh`](super::Mesh), closed and with its normals outwards: what it encloses is the medium. A [`Phong`] beside
 /// it plays no part. How finely the light is computed is in [`ScatteringMaps`].
+///
+/// The presets were measured as reduced coefficients, sigma_s (1 - g), from which nobody can tell how light is scattered in them: they count as
+/// media that scatter evenly. `g` says otherwise and keeps the reduced coefficient, so sigma_s is as much greater as `g` is closer to 1 (beyond
+/// 0.999999 as there). That leaves most of the picture as it is: only what depends on the extinction itself changes, the light that comes out
+/// behind thin parts and beyond edges. `Custom` has a `g` of its own.
 ///
 /// Where light enters and leaves, the surface is smooth and refracts by `eta`. The light that it reflects without entering is no part
 /// of `model`: `specular` adds it as the highlight of a `Phong` whose `specular` is `strength` in all three colours.
@@ -26,22 +32,58 @@ use glam::Vec3;
 ///
 /// ```ron
 /// Subsurface: (material: Preset("marble"), model: CalibratedDipole, specular: Some((strength: 0.2, shininess: 60.0)))
+/// Subsurface: (material: Preset("skin"), g: Some(0.8))
 /// Subsurface: (material: Custom(sigma_a: (0.002, 0.004, 0.007), sigma_s: (2.2, 2.6, 3.0), eta: 1.5))
 /// Subsurface: (material: Custom(sigma_t: (3.0, 3.0, 3.0), albedo: (0.99, 0.9, 0.6), g: 0.6), local: (diffuse: (0.8, 0.7, 0.5)))
 /// ```
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
-#[reflect(Component, Default, PartialEq)]
+#[reflect(Component, Default, PartialEq, Validate)]
 #[reflect(@AlsoCalled(&["Material", "Translucent", "Translucency", "SubsurfaceScattering", "Bssrdf", "Sss", "Skin", "Wax", "Marble"]))]
 #[require(ScatteringMaps)]
 pub struct Subsurface {
     /// What the mesh is filled with.
     pub material: Material,
+    /// Mean cosine of scattering in a medium by name, the reduced scattering of which stays as it is.
+    #[reflect(@Range::new(-1.0, 1.0))]
+    pub g: Option<f32>,
     /// How the scattered light is computed.
     pub model: DipoleModel,
     /// The highlight on the surface.
     pub specular: Option<Specular>,
     /// What the mesh looks like while its shading is `Local`.
     pub local: Phong,
+}
+
+/// The greatest mean cosine of scattering that the scattering coefficient of a medium by name is derived from: there it is a million times the
+/// reduced one.
+const MOST_G: f64 = 1.0 - 1e-6;
+
+impl Subsurface {
+    /// What red, green and blue light meets inside the mesh. None where the material has no meaning, see [`Material::coefficients`].
+    pub fn coefficients(&self) -> Option<[Medium; 3]> {
+        let media = self.material.coefficients()?;
+        let (Some(g), Material::Preset(_)) = (self.g, &self.material) else { return Some(media) };
+        let g = f64::from(g).min(MOST_G);
+        Some(media.map(|medium| Medium {
+            sigma_s: medium.sigma_s * (1.0 - medium.g) / (1.0 - g),
+            g,
+            ..medium
+        }))
+    }
+}
+
+impl Validate for Subsurface {
+    fn problems(&self) -> Vec<(&'static str, String)> {
+        match (self.g, &self.material) {
+            (Some(g), Material::Custom { .. }) => {
+                let message = format!(
+                    "`g` beside `Custom` belongs into it: write `Custom(…, g: {g})`; this one is for a `Preset`"
+                );
+                vec![("g", message)]
+            }
+            _ => Vec::new(),
+        }
+    }
 }
 
 /// A homogeneous medium, by name or by its coefficients.
@@ -53,7 +95,7 @@ pub struct Subsurface {
 /// | | `sigma_s`: scattering, (r, g, b), not reduced | per mm | 0 to 1e12 | – |
 /// | | `sigma_t`: extinction, (r, g, b) | per mm | 0 to 1e12 | – |
 /// | | `albedo`: the share of `sigma_t` that is scattering, (r, g, b) | – | 0 to 1 | – |
-/// | | `g`: mean cosine of the scattering angle | – | -0.999 to 0.999 | 0 |
+/// | | `g`: mean cosine of the scattering angle | – | -1 to 1 | 0 |
 /// | | `eta`: index of refraction, inside over outside | – | 0.5 to 3 | 1.3 |
 ///
 /// A custom medium is written with `sigma_a` and `sigma_s`, or with `sigma_t` and `albedo`; both of the one pair and none of the other.
@@ -78,7 +120,7 @@ pub enum Material {
         #[reflect(default, @Range::new(0.0, 1.0), @Rgb::Colour)]
         albedo: Option<Vec3>,
         /// Mean cosine of the scattering angle.
-        #[reflect(default, @Range::new(-0.999, 0.999))]
+        #[reflect(default, @Range::new(-1.0, 1.0))]
         g: f32,
         /// Index of refraction relative to the outside.
         #[reflect(default = "eta", @Range::new(0.5, 3.0), @Slider::linear(1.0, 2.0))]

@@ -123,7 +123,7 @@ enum Model {
 
 impl Channel {
     fn of(subsurface: &Subsurface, millimetres: f64) -> Option<[Self; 3]> {
-        let channels = subsurface.material.coefficients()?;
+        let channels = subsurface.coefficients()?;
         Some(channels.map(|per_mm| {
             let scaled = Medium {
                 sigma_a: per_mm.sigma_a * millimetres,

@@ -67,7 +67,8 @@ impl Calibration {
 ///
 /// It is a parabola through the exact ratio at three angles at which the light inside is at a cosine of at least 0.2. Where that would
 /// be negative somewhere, as the range of angles that enter a medium of `eta < 1` is narrow, it is a line, or else a constant. It is 0
-/// for a medium that does not scatter, or is not made of finite numbers. `eta` is taken to lie within 0.3 and 4, `g` within ± 0.999.
+/// for a medium that does not scatter, or is not made of finite numbers. `eta` is taken to lie within 0.3 and 4, `g` within ± 0.999 with
+/// the same reduced scattering.
 pub fn calibration(medium: &Medium) -> Calibration {
     let Some(medium) = presentable(medium) else { return Calibration::default() };
     let (dipole, half_space) = (DirectionalDipole::new(&medium), HalfSpace::new(&medium, streams(&medium)));
@@ -147,8 +148,10 @@ fn presentable(medium: &Medium) -> Option<Medium> {
     if ![sigma_a, sigma_s, g, eta].iter().all(|value| value.is_finite()) {
         return None;
     }
-    let g = g.clamp(-MAX_G, MAX_G);
-    let (sigma_a, sigma_s) = (sigma_a.max(0.0), sigma_s.max(0.0));
+    let told_apart = g.clamp(-MAX_G, MAX_G);
+    // What is reduced stays.
+    let sigma_s = if told_apart == g { sigma_s } else { sigma_s * (1.0 - g) / (1.0 - told_apart) };
+    let (sigma_a, sigma_s, g) = (sigma_a.max(0.0), sigma_s.max(0.0), told_apart);
     let sigma_t_prime = sigma_s * (1.0 - g) + sigma_a;
     let scaled = Medium {
         sigma_a: sigma_a / sigma_t_prime,

@@ -49,7 +49,7 @@ pub(crate) struct Dipole {
 impl Dipole {
     /// The model of a mesh. `None` where its material has no meaning.
     pub fn new(subsurface: &Subsurface) -> Option<Self> {
-        let media = subsurface.material.coefficients()?;
+        let media = subsurface.coefficients()?;
         let sound = |Medium { sigma_a, sigma_s, g, eta }: &Medium| {
             [sigma_a, sigma_s, g, eta].iter().all(|value| value.is_finite())
                 && sigma_a.min(*sigma_s) >= 0.0

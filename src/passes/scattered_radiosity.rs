@@ -15,10 +15,11 @@ use super::medium::{Dipole, LEAST_DISTANCE, MediumUniform};
 use super::scattering_gbuffer::{self, CameraMaps, TexelChooser};
 use super::surface_points::SurfacePoints;
 use super::upload::MeshBuffers;
-use crate::components::{DipoleModel, DirectionalLight, Material, ScatteringMaps, Subsurface};
+use crate::components::{DipoleModel, DirectionalLight, ScatteringMaps, Subsurface};
 use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, PassTimer, storage};
 use crate::loading::LoadedMesh;
+use crate::optics::medium::Medium;
 use crate::report::Report;
 use crate::view::Coarseness;
 use bevy_ecs::prelude::*;
@@ -37,7 +38,7 @@ pub(crate) struct ScatteredRadiosity {
     /// What each layer was made from, and of how many sets of samples it is the mean.
     made: Vec<Option<(Recipe, u32)>>,
     /// The model, and what it was made from.
-    dipole: (Material, DipoleModel, Dipole),
+    dipole: ([Medium; 3], DipoleModel, Dipole),
     /// Whether all lights share one layer, in which their irradiance is already.
     pub is_shared: bool,
     /// Counts up whenever the layers change.
@@ -166,7 +167,7 @@ fn coarser(maps: &ScatteringMaps, light: f32) -> ScatteringMaps {
 
 impl ScatteredRadiosity {
     fn new(gpu: &Gpu, layer: u64, size: u64, is_shared: bool, subsurface: &Subsurface) -> Option<Self> {
-        let dipole = (subsurface.material.clone(), subsurface.model, Dipole::new(subsurface)?);
+        let dipole = (subsurface.coefficients()?, subsurface.model, Dipole::new(subsurface)?);
         Some(Self {
             layers: storage(gpu, "scattered_radiosity", size),
             layer,
@@ -206,11 +207,12 @@ impl ScatteredRadiosity {
 
     /// Derives the model anew if what it is made from has changed.
     fn keep_dipole(&mut self, subsurface: &Subsurface) {
-        let (material, model, _) = &self.dipole;
-        if (material, *model) != (&subsurface.material, subsurface.model)
+        let (media, model, _) = &self.dipole;
+        if let Some(now) = subsurface.coefficients()
+            && (*media, *model) != (now, subsurface.model)
             && let Some(dipole) = Dipole::new(subsurface)
         {
-            self.dipole = (subsurface.material.clone(), subsurface.model, dipole);
+            self.dipole = (now, subsurface.model, dipole);
         }
     }
 

@@ -270,7 +270,7 @@ fn draw_of<'a>(
     let specular = subsurface.specular.as_ref();
     instance.specular = Vec3::splat(specular.map_or(0.0, |specular| specular.strength));
     instance.shininess = specular.map_or(0.0, |specular| specular.shininess);
-    instance.eta = subsurface.material.coefficients().map_or(1.0, |channels| channels[0].eta as f32);
+    instance.eta = subsurface.coefficients().map_or(1.0, |channels| channels[0].eta as f32);
     Drawn { mesh: &points.mesh, radiosity: Some(&radiosity.points), instance, columns }
 }
 

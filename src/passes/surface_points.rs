@@ -124,7 +124,7 @@ impl SurfacePoints {
 /// How long edges may be, in body space: half a mean free path, over which the light that leaves cannot change much, but no finer than
 /// the picture shows.
 fn spacing(view: &View, picture: &Picture, body: &Body, subsurface: &Subsurface) -> f64 {
-    let mean_free_path = subsurface.material.coefficients().map_or(f64::INFINITY, |channels| {
+    let mean_free_path = subsurface.coefficients().map_or(f64::INFINITY, |channels| {
         channels.iter().map(|channel| channel.diffusion().sigma_t_prime.recip()).fold(f64::INFINITY, f64::min)
             / body.millimetres
     });

@@ -214,7 +214,7 @@ impl<'a> Materials<'a> {
         if !(distance > 0.0 && sigma_t.is_finite() && sigma_t.max_element() > 0.0) {
             return None;
         }
-        let g = number("scatterAnisotropy").unwrap_or(0.0).clamp(-0.999, 0.999) as f32;
+        let g = number("scatterAnisotropy").unwrap_or(0.0).clamp(-1.0, 1.0) as f32;
         let albedo = albedo.unwrap_or(Vec3::ZERO).clamp(Vec3::ZERO, Vec3::ONE);
         self.clear |= albedo == Vec3::ZERO;
         let sigma_s = sigma_t * albedo.map(|albedo| single_scattering_albedo(albedo, g));
