@@ -47,6 +47,9 @@ fn steps(report: &mut Report) -> Result<()> {
     }
     report.step("scenes", "tyndall check (every scene under scenes/)", || {
         check_scenes(&built.program("tyndall")?.executable, &environment)
+    })?;
+    report.step("fuzz", "cargo run -p tyndall_fuzz -- --seconds 60", || {
+        Program::new(&built.program("tyndall-fuzz")?.executable).arguments(["--seconds", "60"]).run()
     })
 }
 
