@@ -1,22 +1,21 @@
 // Meshes: the radiance that each pixel's nearest surface sends to the eye, and how far away it is.
 //
 //   opaque       L = ambient + sum over lights of (diffuse/pi + specular (s+8)/(8 pi) (n.h)^s) E max(n.l, 0)
-//   translucent  L = T(eta, n.o) M_o + sum over lights of specular (s+8)/(8 pi) (n.h)^s E max(n.l, 0)
+//   translucent  L = rho T(eta, n.o) M_o + sum over lights of specular (s+8)/(8 pi) (n.h)^s E max(n.l, 0)
 //
-// with E the irradiance that volumes in the way leave.
+// with E the irradiance that volumes in the way leave, diffuse the albedo times what the colours of the vertices and the picture say, and rho
+// only the latter.
 //
-// reads  vertices (position, normal; what leaves there), the mesh, lights, light volumes
+// reads  vertices (position, normal; what leaves there; colour, texture coordinate), the mesh, its picture, lights, light volumes
 // writes rgba32float: radiance, distance along the ray (FAR where there is no surface)
 
+#import albedo
 #import frame
 #import fresnel
 #import lights
 #import veils
 
-struct MeshInstance {
-    eye_from_mesh: mat4x4f,
-    // Inverse transpose: takes normals.
-    eye_from_mesh_normal: mat4x4f,
+struct MeshLook {
     ambient: vec3f,
     shininess: f32,
     diffuse: vec3f,
@@ -27,8 +26,19 @@ struct MeshInstance {
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> lights: array<Light, LIGHT_CAPACITY>;
-// The mesh being drawn.
-@group(0) @binding(2) var<uniform> mesh: MeshInstance;
+// What the meshes look like that are being drawn.
+@group(0) @binding(2) var<uniform> mesh: MeshLook;
+
+// Where one of them is: columns that take it to eye space, and the inverse transpose, which takes normals there.
+struct MeshPlace {
+    @location(5) x: vec3f,
+    @location(6) y: vec3f,
+    @location(7) z: vec3f,
+    @location(8) origin: vec3f,
+    @location(9) normal_x: vec3f,
+    @location(10) normal_y: vec3f,
+    @location(11) normal_z: vec3f,
+}
 
 struct Varyings {
     @builtin(position) position_in_clip: vec4f,
@@ -36,15 +46,15 @@ struct Varyings {
     @location(1) normal_in_eye: vec3f,
 }
 
-fn transformed(position: vec3f, normal: vec3f) -> Varyings {
-    let position_in_eye = (mesh.eye_from_mesh * vec4f(position, 1.0)).xyz;
-    let normal_in_eye = (mesh.eye_from_mesh_normal * vec4f(normal, 0.0)).xyz;
+fn transformed(position: vec3f, normal: vec3f, place: MeshPlace) -> Varyings {
+    let position_in_eye = mat4x3f(place.x, place.y, place.z, place.origin) * vec4f(position, 1.0);
+    let normal_in_eye = mat3x3f(place.normal_x, place.normal_y, place.normal_z) * normal;
     return Varyings(frame.clip_from_eye * vec4f(position_in_eye, 1.0), position_in_eye, normal_in_eye);
 }
 
 @vertex
-fn transform(@location(0) position: vec3f, @location(1) normal: vec3f) -> Varyings {
-    return transformed(position, normal);
+fn transform(@location(0) position: vec3f, @location(1) normal: vec3f, place: MeshPlace) -> Varyings {
+    return transformed(position, normal, place);
 }
 
 struct Seen {
@@ -78,10 +88,37 @@ fn reflected(at: Seen, diffuse: vec3f) -> vec3f {
     return radiance;
 }
 
+struct ColouredVaryings {
+    @builtin(position) position_in_clip: vec4f,
+    @location(0) position_in_eye: vec3f,
+    @location(1) normal_in_eye: vec3f,
+    @location(3) colour: vec3f,
+    @location(4) at_picture: vec2f,
+}
+
+@vertex
+fn transform_coloured(
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(3) colour: vec4f,
+    @location(4) at_picture: vec2f,
+    place: MeshPlace,
+) -> ColouredVaryings {
+    let out = transformed(position, normal, place);
+    return ColouredVaryings(out.position_in_clip, out.position_in_eye, out.normal_in_eye, colour.rgb, at_picture);
+}
+
 @fragment
 fn shade(in: Varyings) -> @location(0) vec4f {
     let at = seen(in);
     return vec4f(mesh.ambient + reflected(at, mesh.diffuse), at.distance);
+}
+
+@fragment
+fn shade_coloured(in: ColouredVaryings) -> @location(0) vec4f {
+    let albedo = in.colour * textured(in.at_picture);
+    let at = seen(Varyings(in.position_in_clip, in.position_in_eye, in.normal_in_eye));
+    return vec4f(mesh.ambient + reflected(at, mesh.diffuse * albedo), at.distance);
 }
 
 // A place in the picture moved onto the grid of 1/256 of a pixel that rasterisers count in. Some decide by the place on the grid which pixels a triangle
@@ -104,21 +141,57 @@ fn transform_translucent(
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) radiosity: vec4f,
+    place: MeshPlace,
 ) -> TranslucentVaryings {
-    let out = transformed(position, normal);
+    let out = transformed(position, normal, place);
     return TranslucentVaryings(on_grid(out.position_in_clip), out.position_in_eye, out.normal_in_eye, radiosity.xyz);
+}
+
+struct ColouredTranslucentVaryings {
+    @builtin(position) position_in_clip: vec4f,
+    @location(0) position_in_eye: vec3f,
+    @location(1) normal_in_eye: vec3f,
+    @location(2) radiosity: vec3f,
+    @location(3) colour: vec3f,
+    @location(4) at_picture: vec2f,
+}
+
+@vertex
+fn transform_coloured_translucent(
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) radiosity: vec4f,
+    @location(3) colour: vec4f,
+    @location(4) at_picture: vec2f,
+    place: MeshPlace,
+) -> ColouredTranslucentVaryings {
+    let out = transformed(position, normal, place);
+    return ColouredTranslucentVaryings(
+        on_grid(out.position_in_clip), out.position_in_eye, out.normal_in_eye, radiosity.xyz, colour.rgb, at_picture);
+}
+
+// What a translucent mesh sends to the eye.
+fn sent(at: Seen, radiosity: vec3f) -> vec3f {
+    // Where an interpolated normal leans away from the eye, the facet that is seen does not: without a bound, outlines of coarse meshes
+    // would be dotted with black.
+    let leaves = fresnel_transmittance(max(abs(dot(at.normal, at.to_eye)), 0.1), mesh.eta);
+    // What rounding leaves below 0 is about a millionth of what is beside it.
+    var radiance = leaves * max(radiosity, vec3f(0.0));
+    if any(mesh.specular > vec3f(0.0)) {
+        radiance += reflected(at, vec3f(0.0));
+    }
+    return radiance;
 }
 
 @fragment
 fn shade_translucent(in: TranslucentVaryings) -> @location(0) vec4f {
     let at = seen(Varyings(in.position_in_clip, in.position_in_eye, in.normal_in_eye));
-    // Where an interpolated normal leans away from the eye, the facet that is seen does not: without a bound, outlines of coarse meshes
-    // would be dotted with black.
-    let leaves = fresnel_transmittance(max(abs(dot(at.normal, at.to_eye)), 0.1), mesh.eta);
-    // What rounding leaves below 0 is about a millionth of what is beside it.
-    var radiance = leaves * max(in.radiosity, vec3f(0.0));
-    if any(mesh.specular > vec3f(0.0)) {
-        radiance += reflected(at, vec3f(0.0));
-    }
-    return vec4f(radiance, at.distance);
+    return vec4f(sent(at, in.radiosity), at.distance);
+}
+
+@fragment
+fn shade_coloured_translucent(in: ColouredTranslucentVaryings) -> @location(0) vec4f {
+    let albedo = in.colour * textured(in.at_picture);
+    let at = seen(Varyings(in.position_in_clip, in.position_in_eye, in.normal_in_eye));
+    return vec4f(sent(at, in.radiosity * albedo), at.distance);
 }

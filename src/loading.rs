@@ -1,6 +1,8 @@
 //! The files that components name, read into the world.
 
 mod labels;
+mod once;
+mod width;
 
 use crate::Stage;
 use crate::components::{
@@ -8,16 +10,19 @@ use crate::components::{
 };
 use crate::optics::transfer::{domain_around, domain_of_labels};
 use crate::scene::{EntityProblems, Problem};
-use crate::sources::trail::{self, FileState, Trail};
+use crate::sources::trail::{FileState, Trail};
 use crate::sources::{
-    self, LayoutError, MeshData, MeshStatistics, RawLayout, Selection, SourceError, Space, VolumeData,
+    self, LayoutError, MeshData, MeshStatistics, RawLayout, Samples, Selection, SourceError, Space,
+    VolumeData,
 };
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::component::Mutable;
 use bevy_ecs::prelude::*;
 use glam::{DVec3, Vec3};
+use once::Once;
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Reads meshes and volumes when the components that name them change.
 pub(crate) struct LoadingPlugin;
@@ -26,16 +31,16 @@ impl Plugin for LoadingPlugin {
     fn build(&self, app: &mut App) {
         app.add_message::<FileChanged>();
         // What was read may lie elsewhere.
-        let systems = (unload, load_meshes, load_volumes, components::place).chain();
+        let systems = (unload, load_meshes, load_volumes, components::place, width::advise).chain();
         app.add_systems(Update, systems.in_set(Stage::Load));
     }
 }
 
 /// The triangles of a [`Mesh`], until they are on the GPU.
-#[derive(Component, Debug)]
+#[derive(Component, Clone, Debug)]
 pub struct LoadedMesh {
-    /// The triangles; taken away once they are uploaded.
-    pub data: Option<MeshData>,
+    /// The triangles, which equal meshes share; taken away once they are uploaded.
+    pub data: Option<Arc<MeshData>>,
     /// Corners of the box around the mesh, in the mesh's own space.
     pub bounds: (Vec3, Vec3),
     /// Vertices that lie farthest out in some directions.
@@ -46,20 +51,27 @@ impl LoadedMesh {
     /// The mesh, with what is known of it once its triangles are gone.
     pub fn new(data: MeshData) -> Self {
         let (bounds, extremes) = (data.bounds().unwrap_or_default(), data.extremes());
-        Self { data: Some(data), bounds, extremes }
+        Self { data: Some(Arc::new(data)), bounds, extremes }
     }
 }
 
 /// The samples of a [`Volume`], until they are on the GPU.
-#[derive(Component, Debug)]
+#[derive(Component, Clone, Debug)]
 pub struct LoadedVolume {
-    /// Samples, ranges and bricks; the samples are taken away once they are uploaded.
-    pub data: VolumeData,
-    /// Whether `data` still has its samples.
-    pub has_samples: bool,
+    /// Ranges and bricks, without the samples, which are only as many as they are.
+    pub data: Arc<VolumeData>,
+    /// The samples, which equal volumes share; taken away once they are uploaded.
+    pub samples: Option<Arc<Samples>>,
 }
 
 impl LoadedVolume {
+    /// The volume, with what is known of it once its samples are gone.
+    pub fn new(mut data: VolumeData) -> Self {
+        let emptied = data.samples.emptied();
+        let samples = std::mem::replace(&mut data.samples, emptied);
+        Self { data: Arc::new(data), samples: Some(Arc::new(samples)) }
+    }
+
     /// Half of what the volume measures along its axes, mm.
     pub fn half_extent(&self) -> Vec3 {
         Vec3::from(self.data.size.map(|voxels| voxels as f32)) * self.data.spacing * 0.5
@@ -195,7 +207,7 @@ type WrittenMesh<'a> = (Entity, &'a Mesh, Option<&'a ReadFor<Mesh>>, Option<&'a 
 fn load_meshes(
     mut commands: Commands,
     meshes: Query<WrittenMesh, Or<(Changed<Mesh>, Added<Subsurface>)>>,
-    all: Query<(Entity, &Mesh, &FilesRead)>,
+    all: Query<(Entity, &Mesh, &FilesRead, Has<Subsurface>)>,
     mut changed: MessageReader<FileChanged>,
 ) {
     // What becomes translucent is read again if it was let go of: it is to be refined.
@@ -203,39 +215,52 @@ fn load_meshes(
     let due = meshes.iter().filter(|(_, mesh, read, loaded, scatters)| {
         read.is_none_or(|read| read.0 != **mesh) || *scatters && is_gone(*loaded)
     });
-    let mut due: BTreeMap<Entity, &Mesh> = due.map(|(entity, mesh, ..)| (entity, mesh)).collect();
+    let mut due: BTreeMap<Entity, (&Mesh, bool)> =
+        due.map(|(entity, mesh, .., scatters)| (entity, (mesh, scatters))).collect();
     let files: HashSet<&Path> = changed.read().map(|file| file.0.as_path()).collect();
     if !files.is_empty() {
-        let stale = all.iter().filter(|(.., read)| read.has_any("Mesh", &files));
-        due.extend(stale.map(|(entity, mesh, _)| (entity, mesh)));
+        let stale = all.iter().filter(|(_, _, read, _)| read.has_any("Mesh", &files));
+        due.extend(stale.map(|(entity, mesh, _, scatters)| (entity, (mesh, scatters))));
     }
-    for (entity, mesh) in due {
-        let (read, files) = trail::follow(|| read_mesh(mesh));
+    let mut once = Once::new(|mesh: &Mesh| read_mesh(mesh).map(LoadedMesh::new));
+    for (entity, (mesh, scatters)) in due {
+        let (read, files) = once.read(mesh);
         let problems = match read {
-            Ok(data) => {
+            Ok(loaded) => {
+                let data = loaded.data.as_deref();
                 let note = |note: &String| Problem::note(note.clone()).on(entity, "Mesh");
-                let problems = data.notes.iter().map(note).collect();
-                let origin = data.origin;
+                let notes = data.iter().flat_map(|data| &data.notes).map(note);
+                let medium = data.and_then(MeshData::medium).filter(|_| !scatters);
+                let unused = medium.map(|medium| {
+                    Problem::note("its file describes a medium inside, which only a `Subsurface` shows")
+                        .help(format!("add `Subsurface: {}`; lengths are millimetres", medium.in_ron()))
+                        .on(entity, "Mesh")
+                });
+                let problems = notes.chain(unused).collect();
+                let origin = data.map_or(DVec3::ZERO, |data| data.origin);
                 let mut entity = commands.entity(entity);
                 match origin == DVec3::ZERO {
                     true => entity.remove::<DataFrame>(),
                     false => entity.insert(DataFrame::SceneUnits(glam::DAffine3::from_translation(origin))),
                 };
-                entity.insert(LoadedMesh::new(data));
+                entity.insert(loaded.clone());
                 problems
             }
             // What was loaded last stays.
             Err(error) => vec![Problem::error(error.to_string()).on(entity, "Mesh.path")],
         };
         commands.entity(entity).insert(ReadFor(mesh.clone()));
-        FilesRead::set(&mut commands, entity, "Mesh", files);
+        FilesRead::set(&mut commands, entity, "Mesh", files.clone());
         EntityProblems::set(&mut commands, entity, "load_meshes", problems);
     }
 }
 
 fn read_mesh(mesh: &Mesh) -> Result<MeshData, SourceError> {
     Ok(match mesh {
-        Mesh::File { path, normals } => sources::read_mesh(path.path(), *normals)?,
+        Mesh::File { path, normals, materials } => {
+            let mesh = sources::read_mesh(path.path(), *normals)?;
+            if *materials { mesh } else { mesh.without_materials() }
+        }
         Mesh::Sphere { radius, subdivisions } => sources::procedural::sphere(*radius, *subdivisions),
         Mesh::Box { size } => sources::procedural::cuboid(*size),
         Mesh::Plane { size } => sources::procedural::plane(*size),
@@ -256,27 +281,28 @@ fn load_volumes(
         let stale = all.iter().filter(|(.., read)| read.has_any("Volume", &files));
         due.extend(stale.map(|(entity, volume, _)| (entity, volume)));
     }
+    let mut once = Once::new(|volume: &Volume| read_volume(volume).map(LoadedVolume::new));
     for (entity, volume) in due {
-        let (read, files) = trail::follow(|| read_volume(volume));
+        let (read, files) = once.read(volume);
         let problems = match read {
-            Ok(data) => {
-                let problems = notes_on(volume, &data).map(|note| note.on(entity, "Volume")).collect();
-                let frame = frame_of(volume, &data);
+            Ok(loaded) => {
+                let problems = notes_on(volume, loaded).map(|note| note.on(entity, "Volume")).collect();
+                let frame = frame_of(volume, &loaded.data);
                 let mut entity = commands.entity(entity);
                 match frame {
                     Some(frame) => entity.insert(frame),
                     None => entity.remove::<DataFrame>(),
                 };
-                entity.insert(LoadedVolume { data, has_samples: true });
+                entity.insert(loaded.clone());
                 problems
             }
             // What was loaded last stays.
             Err(error) => {
-                vec![Problem::error(error.to_string()).on(entity, field_at_fault(volume, &error))]
+                vec![Problem::error(error.to_string()).on(entity, field_at_fault(volume, error))]
             }
         };
         commands.entity(entity).insert(ReadFor(volume.clone()));
-        FilesRead::set(&mut commands, entity, "Volume", files);
+        FilesRead::set(&mut commands, entity, "Volume", files.clone());
         EntityProblems::set(&mut commands, entity, "load_volumes", problems);
     }
 }
@@ -306,13 +332,11 @@ fn note_on_place(volume: &Volume, data: &VolumeData) -> Option<String> {
 /// The least rotation, in degrees, that is told of.
 const LEAST_TOLD_DEGREES: f64 = 0.05;
 
-fn notes_on(volume: &Volume, data: &VolumeData) -> impl Iterator<Item = Problem> {
+fn notes_on(volume: &Volume, loaded: &LoadedVolume) -> impl Iterator<Item = Problem> {
+    let data = &loaded.data;
+    let voxels = data.size.map(u64::from).iter().product::<u64>();
     let unfit = (data.non_finite > 0).then(|| {
-        format!(
-            "{} of {} samples are not finite; they are drawn as transparent",
-            data.non_finite,
-            data.samples.len()
-        )
+        format!("{} of {} samples are not finite; they are drawn as transparent", data.non_finite, voxels)
     });
     let labels = labels::notes(volume, data);
     data.notes

@@ -11,10 +11,15 @@ pub use crate::sources::mesh::Normals;
 /// |---|---|---|---|
 /// | `File` | `path` of a Wavefront OBJ, PLY, STL or glTF file, plain or in gzip, which alone needs no name | – | – |
 /// | | `normals`: `Auto` (the file's; else by its smoothing groups; else `Smooth(40.0)`), `Flat`, or `Smooth(degrees)`: means over the faces that meet at no more than this angle | 0 to 180 | `Auto` |
+/// | | `materials`: whether it has the colours of vertices, the materials and the pictures of the file | – | `true` |
 /// | `Sphere` | `radius`, scene units; `subdivisions` of an icosahedron | above 0; 0 to 8 | 1.0; 5 |
 /// | `Box` | `size` along x, y and z, scene units | above 0 | (1, 1, 1) |
 /// | `Plane` | `size` along x and z, scene units; it faces +y | above 0 | (1, 1) |
 /// | `CornellBox` | a room of side 2 about the origin, open towards +z | – | – |
+///
+/// Without a `Phong`, a mesh looks as its file says. With one, the file's colours, materials and pictures are the albedo that `diffuse` is
+/// multiplied by, and nothing else of its materials counts. What leaves a mesh with `Subsurface` is multiplied, point by point, by the colours
+/// of its vertices and its pictures. Opacity is not drawn.
 ///
 /// One unit of a file is one scene unit; a metre of glTF too. Triangles of a part are turned to face one way, those of a closed part outwards.
 ///
@@ -37,6 +42,10 @@ pub enum Mesh {
         /// How its normals come about.
         #[reflect(default)]
         normals: Normals,
+        /// Whether it has the colours, materials and pictures of the file.
+        #[reflect(default = "yes")]
+        #[reflect(@AlsoCalled(&["colours", "colors", "textures", "texture", "material", "mtl"]))]
+        materials: bool,
     },
     /// A sphere about the origin.
     #[reflect(@AlsoCalled(&["Ball", "Icosphere", "Globe"]))]
@@ -69,7 +78,7 @@ pub enum Mesh {
 impl Mesh {
     /// The mesh in a file.
     pub fn file(path: impl Into<std::path::PathBuf>) -> Self {
-        Self::File { path: AssetPath::new(path), normals: Normals::default() }
+        Self::File { path: AssetPath::new(path), normals: Normals::default(), materials: yes() }
     }
 }
 
@@ -77,6 +86,10 @@ impl Default for Mesh {
     fn default() -> Self {
         Self::Sphere { radius: one(), subdivisions: five() }
     }
+}
+
+fn yes() -> bool {
+    true
 }
 
 fn one() -> f32 {

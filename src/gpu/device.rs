@@ -139,8 +139,17 @@ impl Gpu {
     ///
     /// If the driver fails, or has said since the last time that something did.
     pub fn wait(&self, doing: &str) -> Result<(), GpuError> {
+        self.wait_for(None, doing)
+    }
+
+    /// Waits until what was handed in with this index is done, or everything so far.
+    ///
+    /// # Errors
+    ///
+    /// As [`wait`](Self::wait).
+    pub fn wait_for(&self, submission: Option<wgpu::SubmissionIndex>, doing: &str) -> Result<(), GpuError> {
         let failed = |reason| GpuError::Driver { doing: doing.into(), reason };
-        let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
+        let waited = self.device.poll(wgpu::PollType::Wait { submission_index: submission, timeout: None });
         waited.map_err(|error| failed(error.to_string()))?;
         let mut unexpected = self.faults.unexpected.lock().unwrap_or_else(PoisonError::into_inner);
         unexpected.take().map_or(Ok(()), |reason| Err(failed(reason)))

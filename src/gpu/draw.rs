@@ -24,6 +24,8 @@ pub struct DrawDescriptor<'a> {
     pub bindings: &'a [wgpu::BindingType],
     /// Vertex buffers and their attributes, interleaved; none for a full-screen draw.
     pub vertex_buffers: &'a [&'a [wgpu::VertexAttribute]],
+    /// Attributes of each instance, interleaved in a buffer behind those of vertices; none where all are drawn once.
+    pub instances: &'a [wgpu::VertexAttribute],
     /// Format of the colour target.
     pub format: wgpu::TextureFormat,
     /// Whether the nearest fragment wins, with reversed depth.
@@ -46,6 +48,7 @@ impl Draw {
             layout: layout.clone(),
             entry_points: (descriptor.entry_points.0.to_owned(), descriptor.entry_points.1.to_owned()),
             vertex_buffers: descriptor.vertex_buffers.iter().map(|buffer| buffer.to_vec()).collect(),
+            instances: descriptor.instances.to_vec(),
             format: descriptor.format,
             depth: descriptor.depth,
         };
@@ -148,6 +151,7 @@ struct Recipe {
     layout: wgpu::BindGroupLayout,
     entry_points: (String, String),
     vertex_buffers: Vec<Vec<wgpu::VertexAttribute>>,
+    instances: Vec<wgpu::VertexAttribute>,
     format: wgpu::TextureFormat,
     depth: bool,
 }
@@ -155,7 +159,13 @@ struct Recipe {
 impl Recipe {
     fn make(&self, gpu: &Gpu, module: &wgpu::ShaderModule) -> Result<wgpu::RenderPipeline, GpuError> {
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let buffers: Vec<_> = self.vertex_buffers.iter().map(|buffer| Some(vertex_buffer(buffer))).collect();
+        let of_vertices = self.vertex_buffers.iter().map(|buffer| vertex_buffer(buffer));
+        let of_instances = wgpu::VertexBufferLayout {
+            step_mode: wgpu::VertexStepMode::Instance,
+            ..vertex_buffer(&self.instances)
+        };
+        let of_instances = (!self.instances.is_empty()).then_some(of_instances);
+        let buffers: Vec<_> = of_vertices.chain(of_instances).map(Some).collect();
         let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(self.name),
             layout: Some(&pipeline_layout(gpu, self.name, &self.layout)),

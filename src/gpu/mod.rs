@@ -25,5 +25,5 @@ pub use grid::Grid;
 pub use kernel::{Invocations, Kernel, KernelDescriptor};
 pub use readback::{read_buffer, read_texture};
 pub use recent::Recent;
-pub use target::{Layers, Target, begin, texture_of};
+pub use target::{Layers, Target, begin, begin_part, texture_of};
 pub use timer::PassTimer;

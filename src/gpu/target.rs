@@ -115,20 +115,32 @@ pub fn begin<'encoder>(
     depth: &wgpu::TextureView,
     timing: Option<wgpu::RenderPassTimestampWrites>,
 ) -> wgpu::RenderPass<'encoder> {
+    begin_part(encoder, label, (Some(clear), true), (colour, depth), timing)
+}
+
+/// Begins one of several passes that draw the same: the first one clears, the others go on with what there is, and the last one needs no depths
+/// afterwards.
+pub fn begin_part<'encoder>(
+    encoder: &'encoder mut wgpu::CommandEncoder,
+    label: &str,
+    (clear, is_last): (Option<wgpu::Color>, bool),
+    (colour, depth): (&wgpu::TextureView, &wgpu::TextureView),
+    timing: Option<wgpu::RenderPassTimestampWrites>,
+) -> wgpu::RenderPass<'encoder> {
+    let colour_load = clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
+    let depth_load = clear.map_or(wgpu::LoadOp::Load, |_| wgpu::LoadOp::Clear(0.0));
+    let depth_store = if is_last { wgpu::StoreOp::Discard } else { wgpu::StoreOp::Store };
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(label),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {
             view: colour,
             depth_slice: None,
             resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(clear), store: wgpu::StoreOp::Store },
+            ops: wgpu::Operations { load: colour_load, store: wgpu::StoreOp::Store },
         })],
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: depth,
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(0.0),
-                store: wgpu::StoreOp::Discard,
-            }),
+            depth_ops: Some(wgpu::Operations { load: depth_load, store: depth_store }),
             stencil_ops: None,
         }),
         timestamp_writes: timing,

@@ -56,7 +56,7 @@ impl LoadedVolume {
     /// samples are still here.
     pub fn label_counts(&self) -> Vec<(LabelColour, u64)> {
         let Some(values) = self.default_labels(&TransferFunction::default()) else { return Vec::new() };
-        let samples = &self.data.samples;
+        let Some(samples) = &self.samples else { return Vec::new() };
         let mut counts: BTreeMap<i32, u64> = BTreeMap::new();
         for value in (0..samples.len()).filter_map(|index| samples.get(index)) {
             // What has no fraction and is small is itself as an integer.

@@ -79,6 +79,7 @@ fn make(gpu: &Gpu, count: VeilCount, report: &mut Report) -> Result<Draw, GpuErr
             entry_points: ("cover", "dim"),
             bindings: &bindings,
             vertex_buffers: &[],
+            instances: &[],
             format: FORMAT,
             depth: false,
         },

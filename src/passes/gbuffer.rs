@@ -130,6 +130,7 @@ impl Gbuffer {
                         entry_points: ("transform", "record"),
                         bindings: &[binding::UNIFORM_EACH],
                         vertex_buffers: &[&wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3]],
+                        instances: &[],
                         format: FORMAT,
                         depth: true,
                     },

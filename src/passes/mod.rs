@@ -1,5 +1,6 @@
 //! Stale products become textures, and textures a picture. One file a pass, in the order in which they run.
 
+pub(crate) mod appearance;
 pub(crate) mod body;
 pub(crate) mod classification;
 pub mod classify;
@@ -14,6 +15,7 @@ pub mod light_network;
 pub mod light_volume;
 pub mod lighting;
 pub mod medium;
+mod mipmaps;
 pub mod preclassify;
 pub mod preintegrate;
 pub(crate) mod products;

@@ -12,9 +12,10 @@ use crate::scene::{Problem, Problems};
 use crate::view::{Picture, View};
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DVec3};
+use std::collections::HashMap;
 
 /// The refined mesh on the GPU. Between its vertices the light that leaves is interpolated.
-#[derive(Component, Debug)]
+#[derive(Component, Clone, Debug)]
 pub(crate) struct SurfacePoints {
     pub mesh: MeshBuffers,
     /// How many there are.
@@ -59,7 +60,9 @@ pub(crate) fn refine(
     meshes: Query<Refinable>,
     (mut report, mut failure, mut problems): (ResMut<Report>, ResMut<Failure>, ResMut<Problems>),
 ) {
-    let mut held = 0;
+    let mut held = HashMap::new();
+    // Equal meshes that are to be about equally fine share their points.
+    let mut made: Vec<SurfacePoints> = Vec::new();
     for (entity, mesh, buffers, body, subsurface, points) in &meshes {
         if failure.stands_on(entity) {
             continue;
@@ -67,13 +70,19 @@ pub(crate) fn refine(
         let spacing = spacing(&view, &picture, body, subsurface);
         let axes = body.body_from_mesh.matrix3;
         let shape = axes.transpose() * axes;
-        let is_current = |points: &&SurfacePoints| {
-            points.source == *buffers
-                && spacing * HYSTERESIS >= points.spacing
-                && points.shape.abs_diff_eq(shape, SAME * shape.determinant().cbrt())
+        let is_of = |points: &&SurfacePoints| {
+            points.source == *buffers && points.shape.abs_diff_eq(shape, SAME * shape.determinant().cbrt())
         };
+        let is_current = |points: &&SurfacePoints| is_of(points) && spacing * HYSTERESIS >= points.spacing;
         if let Some(points) = points.filter(is_current) {
-            held += points.bytes();
+            held.extend(points.bytes());
+            continue;
+        }
+        let is_alike = |points: &&SurfacePoints| {
+            is_of(points) && (spacing / HYSTERESIS..=spacing).contains(&points.spacing)
+        };
+        if let Some(points) = made.iter().find(is_alike) {
+            commands.entity(entity).insert(points.clone());
             continue;
         }
         let Some(data) = &mesh.data else { continue };
@@ -88,7 +97,7 @@ pub(crate) fn refine(
             if gpu.is_software() { most_points_in_software(data.positions.len()) } else { MOST_POINTS };
         let (refined, _) = data.refined(axes, spacing, most);
         let is_same = refined.positions.len() == data.positions.len();
-        let mesh = if is_same { Ok(buffers.clone()) } else { MeshBuffers::new(&gpu, &refined) };
+        let mesh = if is_same { Ok(buffers.clone()) } else { buffers.refined(&gpu, &refined) };
         let mesh = match mesh {
             Ok(mesh) => mesh,
             Err(error) => {
@@ -98,11 +107,12 @@ pub(crate) fn refine(
         };
         let count = refined.positions.len() as u32;
         let points = SurfacePoints { mesh, count, spacing, source: buffers.clone(), shape };
-        held += points.bytes();
+        held.extend(points.bytes());
+        made.push(points.clone());
         report.ran("surface_points", &[("points", u64::from(points.count))]);
         commands.entity(entity).insert(points);
     }
-    report.hold("surface points", held);
+    report.hold("surface points", held.values().sum());
 }
 
 fn too_many(vertices: usize, most: u64) -> Problem {
@@ -116,8 +126,9 @@ impl SurfacePoints {
         self.spacing
     }
 
-    fn bytes(&self) -> u64 {
-        if self.mesh == self.source { 0 } else { self.mesh.bytes() }
+    /// What holds the points, and how many bytes that are; nothing where the mesh's own vertices do.
+    fn bytes(&self) -> Option<(wgpu::Buffer, u64)> {
+        (self.mesh != self.source).then(|| (self.mesh.vertices.clone(), self.mesh.bytes()))
     }
 }
 

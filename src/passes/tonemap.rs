@@ -88,6 +88,7 @@ fn draw(
                 entry_points: ("cover", "encode"),
                 bindings: &[binding::UNIFORM, binding::TEXTURE],
                 vertex_buffers: &[],
+                instances: &[],
                 format: FORMAT,
                 depth: false,
             },

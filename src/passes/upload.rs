@@ -1,5 +1,6 @@
 //! What was read goes to the GPU, once, and is let go of on the processor.
 
+use super::appearance::Appearance;
 use crate::components::Subsurface;
 use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, VolumeFormat, buffer_of};
@@ -11,14 +12,17 @@ use crate::{Stage, report::Report};
 use bevy_app::{App, Plugin, Update};
 use bevy_ecs::prelude::*;
 use half::f16;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Uploads meshes.
 pub(crate) struct MeshUploadPlugin;
 
 impl Plugin for MeshUploadPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(Update, upload_meshes.in_set(Stage::Upload).run_if(resource_exists::<Gpu>));
+        let systems = (forget::<MeshBuffers, LoadedMesh>, upload_meshes).chain();
+        app.add_systems(Update, systems.in_set(Stage::Upload).run_if(resource_exists::<Gpu>));
     }
 }
 
@@ -27,16 +31,29 @@ pub(crate) struct VolumeUploadPlugin;
 
 impl Plugin for VolumeUploadPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(Update, upload_volumes.in_set(Stage::Upload).run_if(resource_exists::<Gpu>));
+        let systems = (forget::<VolumeTexture, LoadedVolume>, upload_volumes).chain();
+        app.add_systems(Update, systems.in_set(Stage::Upload).run_if(resource_exists::<Gpu>));
     }
 }
 
-/// A mesh on the GPU: position and normal of each vertex, interleaved, six 32-bit floats.
+/// What was uploaded goes with what was read.
+fn forget<Uploaded: Component, Read: Component>(
+    mut commands: Commands,
+    orphans: Query<Entity, (With<Uploaded>, Without<Read>)>,
+) {
+    for entity in &orphans {
+        commands.entity(entity).remove::<Uploaded>();
+    }
+}
+
+/// A mesh on the GPU: position and normal of each vertex, interleaved, six 32-bit floats. Copies share the buffers.
 #[derive(Component, Clone, Debug, PartialEq)]
 pub(crate) struct MeshBuffers {
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
     pub index_count: u32,
+    /// How its file says that it looks.
+    pub appearance: Option<Arc<Appearance>>,
 }
 
 impl MeshBuffers {
@@ -46,6 +63,23 @@ impl MeshBuffers {
     ///
     /// If the driver has no room for it.
     pub fn new(gpu: &Gpu, data: &MeshData) -> Result<Self, GpuError> {
+        Self::with(gpu, data, || Appearance::new(gpu, data))
+    }
+
+    /// Uploads a mesh whose triangles were cut into more, and that looks as it did.
+    ///
+    /// # Errors
+    ///
+    /// If the driver has no room for it.
+    pub fn refined(&self, gpu: &Gpu, data: &MeshData) -> Result<Self, GpuError> {
+        Self::with(gpu, data, || self.appearance.as_ref().map(|appearance| appearance.refined(gpu, data)))
+    }
+
+    fn with(
+        gpu: &Gpu,
+        data: &MeshData,
+        appearance: impl FnOnce() -> Option<Appearance>,
+    ) -> Result<Self, GpuError> {
         let vertices: Vec<[[f32; 3]; 2]> = data
             .positions
             .iter()
@@ -59,28 +93,35 @@ impl MeshBuffers {
                 vertices: buffer_of(gpu, "vertices", bytemuck::cast_slice(&vertices), usage),
                 indices: buffer_of(gpu, "indices", indices, wgpu::BufferUsages::INDEX),
                 index_count: 3 * data.triangles.len() as u32,
+                appearance: appearance().map(Arc::new),
             })
         })
     }
 
     /// Draws all triangles, with the vertices in slot 0.
     pub fn draw(&self, pass: &mut wgpu::RenderPass) {
+        self.draw_some(pass, 0..self.index_count, 0..1);
+    }
+
+    /// Draws the triangles of some indices as often as there are instances, with the vertices in slot 0.
+    pub fn draw_some(&self, pass: &mut wgpu::RenderPass, indices: Range<u32>, instances: Range<u32>) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..self.index_count, 0, 0..1);
+        pass.draw_indexed(indices, 0, instances);
     }
 
     /// Bytes of a vertex.
     pub const VERTEX: u64 = 24;
 
-    /// Bytes that both buffers hold.
+    /// Bytes that it holds.
     pub fn bytes(&self) -> u64 {
-        self.vertices.size() + self.indices.size()
+        let appearance = self.appearance.as_ref().map_or(0, |appearance| appearance.bytes());
+        self.vertices.size() + self.indices.size() + appearance
     }
 }
 
-/// A volume on the GPU.
-#[derive(Component, Debug)]
+/// A volume on the GPU. Copies share the texture.
+#[derive(Component, Clone, Debug)]
 pub(crate) struct VolumeTexture {
     pub view: wgpu::TextureView,
     pub format: VolumeFormat,
@@ -96,7 +137,8 @@ fn upload_meshes(
     (mut report, mut failure): (ResMut<Report>, ResMut<Failure>),
 ) {
     let limit = gpu.device.limits().max_buffer_size;
-    let mut added = 0;
+    // Equal meshes, which share what was read, share what is uploaded. What they share is kept, so that nothing else gets its address.
+    let mut uploaded: HashMap<*const MeshData, (MeshBuffers, Arc<MeshData>)> = HashMap::new();
     for (entity, mut mesh, scatters) in &mut meshes {
         let is_due = mesh.is_changed() || failed.contains(&entity);
         if !is_due || failure.stands_on(entity) {
@@ -114,10 +156,14 @@ fn upload_meshes(
         if !fits {
             continue;
         }
+        if let Some((buffers, _)) = uploaded.get(&Arc::as_ptr(&data)) {
+            commands.entity(entity).insert(buffers.clone());
+            continue;
+        }
         match MeshBuffers::new(&gpu, &data) {
             Ok(buffers) => {
-                added += buffers.bytes();
                 report.ran("upload_meshes", &[("triangles", data.triangles.len() as u64)]);
+                uploaded.insert(Arc::as_ptr(&data), (buffers.clone(), data));
                 commands.entity(entity).insert(buffers);
             }
             Err(error) => {
@@ -127,10 +173,10 @@ fn upload_meshes(
             }
         }
     }
-    let held: u64 = all.iter().map(MeshBuffers::bytes).sum::<u64>() + added;
-    if held > 0 {
-        report.gpu_bytes.insert("meshes", held);
-    }
+    let bytes_of = |buffers: &MeshBuffers| (buffers.vertices.clone(), buffers.bytes());
+    let each: HashMap<wgpu::Buffer, u64> =
+        all.iter().chain(uploaded.values().map(|(buffers, _)| buffers)).map(bytes_of).collect();
+    report.hold("meshes", each.values().sum());
 }
 
 fn mesh_too_large(data: &MeshData, bytes: u64, limit: u64) -> Problem {
@@ -149,41 +195,43 @@ fn upload_volumes(
     (mut report, mut failure): (ResMut<Report>, ResMut<Failure>),
 ) {
     let limit = gpu.device.limits().max_texture_dimension_3d;
-    let mut added = 0;
+    // Equal volumes, which share their samples, share the texture.
+    let mut uploaded: HashMap<*const Samples, (VolumeTexture, Arc<Samples>)> = HashMap::new();
     for (entity, mut volume) in &mut volumes {
-        let volume = volume.bypass_change_detection();
-        if !volume.has_samples || failure.stands_on(entity) {
+        if failure.stands_on(entity) {
             continue;
         }
-        volume.has_samples = false;
+        let volume = volume.bypass_change_detection();
+        let Some(samples) = volume.samples.take() else { continue };
         let size = volume.data.size;
-        let emptied = volume.data.samples.emptied();
-        let samples = std::mem::replace(&mut volume.data.samples, emptied);
         let too_large = volume_too_large(size, limit).map(|problem| problem.on(entity, "Volume"));
         let fits = too_large.is_none();
         EntityProblems::set(&mut commands, entity, "upload_volumes", too_large.into_iter().collect());
         if !fits {
             continue;
         }
+        if let Some((texture, _)) = uploaded.get(&Arc::as_ptr(&samples)) {
+            commands.entity(entity).insert(texture.clone());
+            continue;
+        }
         match gpu
             .attempt("uploading a volume", || Ok(texture(&gpu, size, &samples, volume.data.non_finite > 0)))
         {
             Ok(texture) => {
-                added += texture.bytes;
                 report.ran("upload_volumes", &[("voxels", samples.len() as u64)]);
+                uploaded.insert(Arc::as_ptr(&samples), (texture.clone(), samples));
                 commands.entity(entity).insert(texture);
             }
             Err(error) => {
-                volume.data.samples = samples;
-                volume.has_samples = true;
+                volume.samples = Some(samples);
                 failure.on(entity, "upload_volumes", "Volume", error);
             }
         }
     }
-    let held: u64 = all.iter().map(|volume| volume.bytes).sum::<u64>() + added;
-    if held > 0 {
-        report.gpu_bytes.insert("volumes", held);
-    }
+    let bytes_of = |volume: &VolumeTexture| (volume.view.clone(), volume.bytes);
+    let each: HashMap<wgpu::TextureView, u64> =
+        all.iter().chain(uploaded.values().map(|(texture, _)| texture)).map(bytes_of).collect();
+    report.hold("volumes", each.values().sum());
 }
 
 fn volume_too_large([x, y, z]: [u32; 3], limit: u32) -> Option<Problem> {
@@ -232,7 +280,7 @@ fn texture(gpu: &Gpu, size: [u32; 3], samples: &Samples, is_masked: bool) -> Vol
 }
 
 /// Samples as texels of a format: see [`VolumeFormat::choose`] for which goes with which.
-fn convert(samples: &Samples, range: std::ops::Range<usize>, format: VolumeFormat) -> Vec<u8> {
+fn convert(samples: &Samples, range: Range<usize>, format: VolumeFormat) -> Vec<u8> {
     use wgpu::TextureFormat as Format;
     fn bytes<T: bytemuck::Pod>(texels: impl Iterator<Item = T>) -> Vec<u8> {
         bytemuck::cast_slice(&texels.collect::<Vec<T>>()).to_vec()

@@ -116,8 +116,8 @@ mod tests {
             assert!(bytes.windows(4).any(|window| window == chunk), "{chunk:?}");
         }
         let (info, _) = read(&encode(&image(pixels(), None, Auto::Value(2.0)), Format::Png).unwrap());
-        assert_eq!((info.srgb, info.source_gamma), (None, Some(png::ScaledFloat::new(0.5))));
-        assert!(info.source_chromaticities.is_some());
+        assert_eq!((info.srgb, info.gama_chunk), (None, Some(png::ScaledFloat::new(0.5))));
+        assert!(info.chrm_chunk.is_some());
     }
 
     #[test]

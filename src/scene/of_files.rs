@@ -72,6 +72,7 @@ pub fn scene_of_files(
 ) -> Result<String, OfFilesError> {
     let kinds: Vec<(&PathBuf, Option<Kind>)> =
         files.iter().map(|file| (file, sources::recognise(file))).collect();
+    let has_volumes = kinds.iter().any(|(_, kind)| matches!(kind, Some(Kind::Volume { .. })));
     let is_patient = kinds.iter().any(|(_, kind)| matches!(kind, Some(Kind::Volume { in_patient: true })));
     let view = Basis::new(orientation, is_patient).ok_or(OfFilesError::Directions)?;
     let mut scenes = kinds.iter().filter(|(_, kind)| kind.is_none()).map(|(file, _)| *file);
@@ -81,13 +82,20 @@ pub fn scene_of_files(
     }
     let mut text = String::new();
     let mut names = BTreeSet::from(RESERVED.map(str::to_owned));
+    let mut is_in_metres = false;
     let around = scene.map(|scene| Around::read(scene, &mut names)).transpose()?;
     for (file, kind) in &kinds {
         let Some(kind) = kind else { continue };
         let name = quoted(&free_name(file, &mut names));
         let path = quoted(&relative_to(file, folder));
         _ = match kind {
-            Kind::Mesh => writeln!(text, "        {name}: (\n            Mesh: File({path}),\n        ),"),
+            Kind::Mesh => {
+                let medium =
+                    medium_of(file).map(|medium| format!("\n            Subsurface: {},", medium.in_ron()));
+                is_in_metres |= medium.is_some();
+                let medium = medium.unwrap_or_default();
+                writeln!(text, "        {name}: (\n            Mesh: File({path}),{medium}\n        ),")
+            }
             Kind::Volume { in_patient } => {
                 let file = if *in_patient { format!("path: {path}, place: Patient") } else { path };
                 writeln!(
@@ -102,11 +110,21 @@ pub fn scene_of_files(
         // A scene has its own camera and lights.
         Some(around) => format!("{}{text}    {}", around.before, around.behind),
         None => format!(
-            "{}(\n    background: (0.03, 0.03, 0.035),\n    entities: {{\n{text}{}    }},\n)\n",
+            "{}(\n    background: (0.03, 0.03, 0.035),\n{}    entities: {{\n{text}{}    }},\n)\n",
             heading(files),
+            if is_in_metres && !has_volumes { "    millimetres_per_unit: 1000.0,\n" } else { "" },
             view.camera_and_lights()
         ),
     })
+}
+
+/// The medium inside a mesh, if its file is of a format that can say so, and does. Its lengths are metres in the file.
+fn medium_of(file: &Path) -> Option<sources::MeshSubsurface> {
+    let ending = file.extension()?.to_str()?.to_ascii_lowercase();
+    // Whatever is wrong with it is told when it is loaded.
+    let mesh =
+        matches!(ending.as_str(), "gltf" | "glb").then(|| sources::read_mesh(file, Default::default()));
+    mesh?.ok()?.medium()
 }
 
 /// The text of a scene in front of the bracket that closes its entities, and from there on.

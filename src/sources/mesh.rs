@@ -76,6 +76,26 @@ impl MeshData {
         }))
     }
 
+    /// The medium that the file says most of the triangles enclose.
+    pub fn medium(&self) -> Option<MeshSubsurface> {
+        let medium = |part: &MeshPart| self.materials.get(part.material as usize)?.subsurface;
+        let media = self.parts.iter().filter_map(|part| Some((part.triangles.len(), medium(part)?)));
+        let all: usize = media.clone().map(|(triangles, _)| triangles).sum();
+        let (_, most) = media.max_by_key(|(triangles, _)| *triangles)?;
+        (2 * all > self.triangles.len()).then_some(most)
+    }
+
+    /// The same shape, of which nothing says what it looks like.
+    pub fn without_materials(self) -> Self {
+        Self {
+            colours: Vec::new(),
+            texture_coordinates: Vec::new(),
+            parts: Vec::new(),
+            materials: Vec::new(),
+            ..self
+        }
+    }
+
     /// Counts and measures the mesh, after joining vertices of equal position.
     pub fn statistics(&self) -> MeshStatistics {
         MeshStatistics::of(self)

@@ -92,6 +92,7 @@ pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
             entry_points: ("cover", fragment),
             bindings: &bindings,
             vertex_buffers: &[],
+            instances: &[],
             format: FORMAT,
             depth: false,
         },

@@ -67,6 +67,23 @@ pub struct MeshSubsurface {
     pub eta: f32,
 }
 
+impl MeshSubsurface {
+    /// The `Subsurface` of a scene that is filled with it, as scenes write it.
+    pub fn in_ron(&self) -> String {
+        let per_channel = |value: Vec3| {
+            let [red, green, blue] = value.to_array();
+            format!("({red:?}, {green:?}, {blue:?})")
+        };
+        format!(
+            "(material: Custom(sigma_a: {}, sigma_s: {}, g: {:?}, eta: {:?}))",
+            per_channel(self.sigma_a),
+            per_channel(self.sigma_s),
+            self.g,
+            self.eta
+        )
+    }
+}
+
 /// A picture that colours a surface.
 #[derive(Clone, PartialEq, Eq)]
 pub struct TextureImage {
