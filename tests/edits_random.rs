@@ -97,6 +97,7 @@ impl Maker<'_> {
             "u64" => Box::new(random.next() >> random.below(64)),
             "bool" => Box::new(random.one_in(2)),
             "String" => Box::new(self.text(random, allowed)),
+            "i32" => Box::new(number(random) as i32),
             "Vec2" => Box::new(Vec2::from_array([0; 2].map(|_| number(random)))),
             "Vec3" => Box::new(Vec3::from_array([0; 3].map(|_| number(random)))),
             "UVec3" => Box::new(UVec3::from_array([0; 3].map(|_| number(random).abs() as u32))),

@@ -319,6 +319,7 @@ fn everything_about_scattering_can_be_written() {
     )
     .load(&[]);
     let bunny = Subsurface {
+        g: None,
         material: Material::Preset("skin".into()),
         g: None,
         model: DipoleModel::DirectionalDipole,

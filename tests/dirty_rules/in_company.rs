@@ -124,6 +124,7 @@ pub const TABLE: Table = Table {
         ("eye.ViewCamera.projection", "Orthographic(height: 30.0)", ""),
         ("eye.ViewCamera.exposure", "1.0", ""),
         ("eye.ViewCamera.gamma", "1.8", ""),
+        ("eye.ViewCamera.gamma", "Auto", ""),
         ("background", "(0.3, 0.0, 0.1)", ""),
         ("block.Phong.ambient", "(0.2, 0.1, 0.1)", ""),
         ("block.Phong.diffuse", "(0.2, 0.6, 0.7)", ""),

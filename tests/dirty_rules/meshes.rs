@@ -35,6 +35,8 @@ pub const TABLE: Table = Table {
         ("eye.ViewCamera.projection.height", "11.0", ""),
         ("shard.Mesh.path", "\"other.obj\"", RESHAPED),
         ("shard.Mesh", "Sphere(radius: 1.0, subdivisions: 1)", RESHAPED),
+        ("shard.Mesh.normals", "Flat", RESHAPED),
+        ("shard.Mesh.normals", "Smooth(100.0)", RESHAPED),
         (
             "shard.Transform.scale",
             "(1.0, 0.9, 1.2)",

@@ -178,7 +178,7 @@ fn a_file_concerns_those_who_share_it() {
         (
             "smoke.raw",
             "\u{11}".repeat(1000),
-            "upload_volumes 2 of 2000 voxels, classify 2 of 96 entries, light_volume 2",
+            "upload_volumes 1 of 1000 voxels, classify 2 of 96 entries, light_volume 2",
         ),
     ] {
         let ran = stage.save_as(name, &text);

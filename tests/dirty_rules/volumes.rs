@@ -93,6 +93,11 @@ pub const TABLE: Table = Table {
             "Raw(path: \"floats.raw\", size: (10, 10, 10), spacing: (0.3, 0.3, 0.3), format: F32)",
             CLOUD_RELOADED,
         ),
+        (
+            "cloud.Volume",
+            "Raw(path: \"floats.raw\", size: (10, 10, 10), spacing: (0.3, 0.3, 0.3), format: Rgba8)",
+            CLOUD_RELOADED,
+        ),
         ("cloud.TransferFunction.classification", "Post", "classify 1 of 64 entries"),
         ("cloud.VolumeLighting.cone_angle", "50.0", CLOUD_SCATTERS_OTHERWISE),
         ("cloud.VolumeLighting.g", "0.5", CLOUD_SCATTERS_OTHERWISE),

@@ -98,7 +98,7 @@ fn an_entity_is_chosen_by_what_it_has() {
 fn a_path_says_whether_its_file_is_there() {
     let mut path = AssetPath::new("../assets/lotus.obj");
     path.resolve(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes"));
-    let mut harness = inspector(Mesh::File { path, normals: Default::default() });
+    let mut harness = inspector(Mesh::File { path, normals: Default::default(), materials: true });
     let explanation = |harness: &Harness<Inspected<Mesh>>| {
         harness.get_by_label("Mesh.path").accesskit_node().description().unwrap()
     };
