@@ -40,7 +40,7 @@ pub(super) struct HelpArguments {
 
 #[derive(Args, Debug)]
 pub(super) struct ViewArguments {
-    /// A scene (RON), or meshes, volumes and folders of DICOM slices to look at together
+    /// A scene (RON), or meshes, volumes and folders of slices to look at together
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     #[command(flatten)]
@@ -61,7 +61,7 @@ pub(super) struct ViewArguments {
 
 #[derive(Args, Debug)]
 pub(super) struct RenderArguments {
-    /// A scene (RON), or meshes, volumes and folders of DICOM slices to draw together
+    /// A scene (RON), or meshes, volumes and folders of slices to draw together
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     #[command(flatten)]
@@ -103,7 +103,7 @@ pub(super) struct RenderArguments {
 
 #[derive(Args, Debug)]
 pub(super) struct CheckArguments {
-    /// Scenes (RON), meshes, volumes, folders of DICOM slices
+    /// Scenes (RON), meshes, volumes, folders of slices
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Print the problems as JSON on standard output
@@ -113,7 +113,7 @@ pub(super) struct CheckArguments {
 
 #[derive(Args, Debug)]
 pub(super) struct InfoArguments {
-    /// A scene (RON), or meshes, volumes and folders of DICOM slices; without any, the machine
+    /// A scene (RON), or meshes, volumes and folders of slices; without any, the machine
     #[arg(value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Print JSON on standard output
@@ -123,7 +123,7 @@ pub(super) struct InfoArguments {
 
 #[derive(Args, Debug)]
 pub(super) struct NewArguments {
-    /// The folder to make; or meshes, volumes and folders of DICOM slices to write a scene for
+    /// The folder to make; or meshes, volumes and folders of slices to write a scene for
     #[arg(required = true, value_name = "DIR|FILE")]
     pub paths: Vec<PathBuf>,
     /// The scene to write for the files

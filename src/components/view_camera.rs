@@ -14,7 +14,7 @@ use glam::Vec3;
 /// | `eye` | point | scene units | not `target` | (0, 0, 4) |
 /// | `target` | point that appears in the middle | scene units | – | (0, 0, 0) |
 /// | `up` | vector that points up in the picture | – | not along the view | (0, 1, 0) |
-/// | `frame` | `None`, or `(from, fill)`: the camera stands in the direction `from` of all that can be seen, so far away that it fills this share of the picture; `eye` and `target` play no part | – | `from` not 0 and not along `up`; `fill` 0.01 to 1 | `None`; `from: (0, 0, 1)`, `fill: 0.9` |
+/// | `frame` | `None`, or `(from, fill)`: the camera stands in the direction `from` of all that can be seen, so far away that it fills this share of the picture; `eye` and `target` play no part | – | `from` not 0 and not along `up`; `fill` 0.01 to 1 | `None` |
 /// | `projection` | `Perspective(vertical_fov)` or `Orthographic(height)` | degrees; scene units | 0.01 to 179; above 0 | `Perspective(vertical_fov: 45.0)` |
 /// | `exposure` | number | EV: each step doubles the brightness | -100 to 100 | 0 |
 /// | `gamma` | `Auto` for the curve of sRGB, or an exponent | – | 0.1 to 10 | `Auto` |

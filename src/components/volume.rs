@@ -12,11 +12,12 @@ pub use crate::sources::{Endian, SampleFormat};
 ///
 /// | variant | what it reads |
 /// |---|---|
-/// | `File(path)` | a file that says itself what it holds: NRRD, NIfTI, MetaImage, DICOM (one file, a folder with series, also in folders within it, or a DICOMDIR), legacy VTK structured points |
+/// | `File(path)` | a file that says itself what it holds: NRRD, NIfTI, MetaImage, DICOM (one file, a folder with series, also in folders within it, or a DICOMDIR), images of VTK (`.vti`, or legacy `.vtk` also of other grids that are even), TIFF stacks, NumPy arrays (`.npy`), a folder of numbered pictures (TIFF, PNG, JPEG) |
 /// | `Raw(…)` | bare samples, described by its fields |
 ///
 /// Which format a `File` is, its content says. Its spacing is in mm. Where it says how it lies in a patient, as NIfTI and DICOM do,
-/// +x is right, +y anterior and +z superior; other files keep their own axes. Axes are only exchanged and reversed, never resampled,
+/// +x is right, +y anterior and +z superior; other files keep their own axes: pages of TIFF and pictures of a folder lie along +z, their rows along +y; the last
+/// three axes of a NumPy array are z, y and x. Axes are only exchanged and reversed, never resampled,
 /// and a note tells of it, as of whatever else is not drawn as it is written. 8- and 16-bit integers and 32-bit floats keep their type;
 /// wider or scaled integers become the first of `U8`, `I8`, `U16`, `I16` that holds every value exactly, or else `F32`; scaled and
 /// 64-bit floats become `F32`.
@@ -25,7 +26,7 @@ pub use crate::sources::{Endian, SampleFormat};
 /// |---|---|---|---|---|
 /// | `path` | file or folder; alone it needs no name | – | – | – |
 /// | `place` | `Centred` on the entity's origin, or `Patient`: where the file says, so that a mask lies on its scan | – | – | `Centred` |
-/// | `index` | entry along a fourth axis, such as a time point | – | below their number | 0 |
+/// | `index` | entry along a fourth axis, such as a time point, or one of several arrays of VTK | – | below their number | 0 |
 /// | `component` | `Auto` (all of a colour, else the first), or one of the numbers that each sample consists of | – | below their number | `Auto` |
 /// | `series` | of a DICOM folder: `SeriesInstanceUID`, number or description | – | – | the largest |
 /// | `interpolation` | `Auto`, `Linear` or `Nearest` | – | – | `Auto`: `Nearest` for label maps |
@@ -51,14 +52,15 @@ pub use crate::sources::{Endian, SampleFormat};
 /// ```ron
 /// Volume: File("head.nii.gz")
 /// Volume: File(path: "mask.nii.gz", place: Patient, interpolation: Nearest)
-/// Volume: Raw(path: "../assets/bonsai.raw", size: (256, 256, 256), format: U8, spacing: (0.08, 0.08, 0.08))
+/// Volume: Raw(path: "../assets/bonsai.raw", size: (256, 256, 256),
+///     format: U8, spacing: (0.08, 0.08, 0.08))
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, PartialEq)]
 #[reflect(@AlsoCalled(&["Voxels", "Scan", "Image", "Grid", "Density", "Raw", "Nifti", "Nrrd", "Dicom"]))]
 #[require(Transform, Placement, TransferFunction, VolumeLighting, RayCast)]
 pub enum Volume {
-    /// Read from a file, or a folder of DICOM slices, that says itself what it holds.
+    /// Read from a file, or a folder of slices, that says itself what it holds.
     #[reflect(@AlsoCalled(&["Nifti", "Nii", "Nrrd", "Nhdr", "Dicom", "Dcm", "MetaImage", "Mha", "Mhd", "Vtk", "Vti", "Npy", "Numpy", "Tiff", "Tif", "Image", "Load", "Path", "Import"]))]
     File {
         /// The file or folder.
@@ -67,7 +69,7 @@ pub enum Volume {
         /// Where it lies.
         #[reflect(default)]
         place: Place,
-        /// The entry along a fourth axis, such as a time point, counted from 0.
+        /// The entry along a fourth axis, such as a time point, or one of several arrays of VTK, counted from 0.
         #[reflect(default)]
         index: u32,
         /// The component of samples that consist of several numbers, counted from 0.

@@ -26,4 +26,4 @@ pub use kernel::{Invocations, Kernel, KernelDescriptor};
 pub use readback::{read_buffer, read_texture};
 pub use recent::Recent;
 pub use target::{Layers, Target, begin, begin_part, texture_of};
-pub use timer::PassTimer;
+pub use timer::{PassTimer, ends};

@@ -86,3 +86,18 @@ fn time_buffer(gpu: &Gpu, usage: wgpu::BufferUsages) -> wgpu::Buffer {
         mapped_at_creation: false,
     })
 }
+
+/// Of the times of many draws those that the first and the last of them write.
+pub fn ends<'a>(
+    all: &wgpu::RenderPassTimestampWrites<'a>,
+    is_first: bool,
+    is_last: bool,
+) -> Option<wgpu::RenderPassTimestampWrites<'a>> {
+    let beginning_of_pass_write_index = all.beginning_of_pass_write_index.filter(|_| is_first);
+    let end_of_pass_write_index = all.end_of_pass_write_index.filter(|_| is_last);
+    (is_first || is_last).then_some(wgpu::RenderPassTimestampWrites {
+        query_set: all.query_set,
+        beginning_of_pass_write_index,
+        end_of_pass_write_index,
+    })
+}

@@ -22,6 +22,7 @@ use super::{
     volume::{Endian, VolumeData},
 };
 use header::{DataFile, Header};
+pub(super) use words::millimetres;
 
 /// Lines that `line skip` may have, and bytes in them.
 const MAX_SKIPPED_LINES: u64 = 1 << 20;
@@ -84,8 +85,10 @@ fn place(stream: &mut SampleStream, header: &Header, samples: u64) -> Result<(),
         }
     }
     match u64::try_from(header.byte_skip) {
-        // A packed file's bytes are skipped once they are out, a plain one's in the file, where its length is known.
-        Ok(skip) if stream.packing == Packing::Plain => stream.offset = stream.offset.saturating_add(skip),
+        // A packed file's bytes are skipped once they are out, others in the file.
+        Ok(skip) if matches!(stream.packing, Packing::Plain | Packing::Text) => {
+            stream.offset = stream.offset.saturating_add(skip);
+        }
         Ok(skip) => stream.skip = skip,
         Err(_) => {
             let needed = samples.saturating_mul(stream.format.bytes());

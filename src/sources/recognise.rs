@@ -1,6 +1,6 @@
 //! What a file is, by how it begins: for those who are given a file and not told.
 
-use super::{file, mesh_file, raw::GZIP_MAGIC, self_describing};
+use super::{file, mesh_file, raw::GZIP_MAGIC, self_describing, slices};
 use flate2::read::MultiGzDecoder;
 use std::io::Read;
 use std::path::Path;
@@ -25,10 +25,11 @@ const MESHES: [&str; 5] = ["obj", "ply", "stl", "gltf", "glb"];
 const VOLUMES: [&str; 13] =
     ["nrrd", "nhdr", "nii", "hdr", "mha", "mhd", "dcm", "ima", "vtk", "vti", "tif", "tiff", "npy"];
 
-/// What the file, or folder of DICOM slices, is; none for what is neither, cannot be opened or is not there.
+/// What the file, or the folder of slices, is; none for what is neither, cannot be opened or is not there.
 pub fn recognise(path: &Path) -> Option<Kind> {
     if path.is_dir() {
-        return Some(Kind::Volume { in_patient: true });
+        // Slices of DICOM, unless it holds pictures only.
+        return Some(Kind::Volume { in_patient: slices::pictures(path).is_none() });
     }
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     if ending == "ron" {
@@ -92,6 +93,11 @@ mod tests {
         assert_eq!(recognised("a.nrrd", b"NRRD0004\ntype: uchar\n"), volume);
         assert_eq!(recognised("b.nrrd", b"NRRD0004\nspace: left-posterior-superior\n"), patient);
         assert_eq!(recognised("a.vtk", b"# vtk DataFile Version 3.0\n"), volume);
+        assert_eq!(recognised("f", b"II*\0\x08\0\0\0"), volume);
+        assert_eq!(recognised("g", b"\x93NUMPY\x01\0"), volume);
+        assert_eq!(recognised("h", b"<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\">"), volume);
+        assert_eq!(recognised("i", b"<VTKFile type=\"UnstructuredGrid\">"), None);
+        assert_eq!(recognised("empty.tiff", b""), volume);
         assert_eq!(recognised("empty.stl", b""), Some(Kind::Mesh));
         assert_eq!(recognised("notes.txt", b"v for victory\nno numbers\n"), None);
         assert_eq!(recognised("a.ron", b"v 0 0 0\n"), None);

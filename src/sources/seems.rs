@@ -6,7 +6,7 @@ use std::path::Path;
 pub(crate) const HEAD: usize = 512;
 
 /// What is read here, for who gave something else.
-pub(crate) const READ_HERE: &str = "read here are scenes (.ron), meshes (.obj, .ply, .stl, .gltf, .glb), volumes (.nrrd, .nii, .mhd, .vtk, DICOM)";
+pub(crate) const READ_HERE: &str = "read here are scenes (.ron), meshes (.obj, .ply, .stl, .gltf), volumes (.nrrd, .nii, .vtk, .tif, .npy, DICOM)";
 
 /// What a file seems to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,9 +43,10 @@ const MAGIC: &[(usize, &[u8], Seems)] = &[
     (4, b"n+2\0", Seems::Volume("NIfTI")),
     (0, b"\x93NUMPY", Seems::Volume("NumPy")),
     (0, b"\x89HDF\r\n\x1a\n", Seems::Other("an HDF5 file")),
-    (0, b"II*\0", Seems::Other("a TIFF picture")),
-    (0, b"MM\0*", Seems::Other("a TIFF picture")),
-    (0, b"II+\0", Seems::Other("a TIFF picture")),
+    (0, b"II*\0", Seems::Volume("TIFF")),
+    (0, b"MM\0*", Seems::Volume("TIFF")),
+    (0, b"II+\0", Seems::Volume("TIFF")),
+    (0, b"MM\0+", Seems::Volume("TIFF")),
     (0, b"\x89PNG\r\n\x1a\n", Seems::Other("a PNG picture")),
     (0, b"\xff\xd8\xff", Seems::Other("a JPEG picture")),
     (0, b"\0\0\0\x0cjP  ", Seems::Other("a JPEG 2000 picture")),

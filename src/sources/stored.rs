@@ -131,6 +131,46 @@ impl StoredFormat {
 }
 
 impl Stored {
+    /// How each is stored.
+    pub fn format(&self) -> StoredFormat {
+        macro_rules! format_of {
+            ($($variant:ident)*) => {
+                match self { $(Self::$variant(_) => StoredFormat::$variant),* }
+            };
+        }
+        format_of!(U8 I8 U16 I16 U32 I32 U64 I64 F32 F64)
+    }
+
+    /// The samples as they lie in memory.
+    pub fn as_bytes(&self) -> &[u8] {
+        with_samples!(self, samples => bytemuck::cast_slice(samples))
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        with_samples!(self, samples => samples.len())
+    }
+
+    /// Adds samples from their bytes, in the machine's order; `None` if there is no memory for them.
+    pub fn append_bytes(&mut self, bytes: &[u8]) -> Option<()> {
+        with_samples!(self, samples => append_bytes(samples, bytes))
+    }
+
+    /// What 16-bit floats that were read as words stand for; other samples as they are.
+    pub fn with_halves_read(self, path: &Path) -> Result<Self, SourceError> {
+        match self {
+            Self::U16(words) => {
+                Ok(Self::F32(collect(path, words.iter().map(|word| half::f16::from_bits(*word).to_f32()))?))
+            }
+            other => Ok(other),
+        }
+    }
+
+    /// The value of one, to 53 bits; NaN where there is none.
+    pub fn value(&self, index: usize) -> f64 {
+        with_samples!(self, samples => samples.get(index).map_or(f64::NAN, |sample| sample.value()))
+    }
+
     /// Scales the samples and brings them to a type that is drawn; see the module. What is lost is added to `notes`.
     pub fn into_samples(
         self,
@@ -152,6 +192,14 @@ impl Stored {
             }
         }
     }
+}
+
+fn append_bytes<T: Pod>(samples: &mut Vec<T>, bytes: &[u8]) -> Option<()> {
+    let (start, more) = (samples.len(), bytes.len() / size_of::<T>());
+    samples.try_reserve(more).ok()?;
+    samples.resize(start + more, T::zeroed());
+    bytemuck::cast_slice_mut(&mut samples[start..]).copy_from_slice(&bytes[..more * size_of::<T>()]);
+    Some(())
 }
 
 fn convert<T: Element>(

@@ -5,7 +5,7 @@ mod number;
 
 use std::{
     fs::File,
-    io::{self, BufRead, BufReader, Read},
+    io::{self, BufRead, BufReader, Read, Seek, SeekFrom},
     path::Path,
 };
 
@@ -43,13 +43,15 @@ pub(super) struct HeaderLines<'a> {
     pub offset: u64,
     /// How many of them were lines.
     in_lines: u64,
+    /// Length of the file.
+    bytes: u64,
 }
 
 impl<'a> HeaderLines<'a> {
     /// Opens a file.
     pub fn open(path: &'a Path) -> Result<Self, SourceError> {
-        let (file, _) = file::open(path)?;
-        Ok(Self { path, reader: BufReader::new(file), line: 0, offset: 0, in_lines: 0 })
+        let (file, bytes) = file::open(path)?;
+        Ok(Self { path, reader: BufReader::new(file), line: 0, offset: 0, in_lines: 0, bytes })
     }
 
     /// The next line without its end, and without a mark in front of the first; `None` at the end of the file. Bytes that are
@@ -73,6 +75,58 @@ impl<'a> HeaderLines<'a> {
         Ok(Some(text.trim_end_matches(['\n', '\r']).to_owned()))
     }
 
+    /// Goes over so many bytes without reading them; whether the file has them.
+    pub fn skip_bytes(&mut self, bytes: u64) -> Result<bool, SourceError> {
+        let to = self.offset.saturating_add(bytes);
+        if to > self.bytes {
+            return Ok(false);
+        }
+        self.reader.seek(SeekFrom::Start(to)).map_err(|cause| file::io_error(self.path, cause))?;
+        self.offset = to;
+        Ok(true)
+    }
+
+    /// The next byte; `None` at the end of the file.
+    pub fn byte(&mut self) -> Result<Option<u8>, SourceError> {
+        let buffer = self.reader.fill_buf().map_err(|cause| file::io_error(self.path, cause))?;
+        let byte = buffer.first().copied();
+        self.reader.consume(usize::from(byte.is_some()));
+        self.offset += u64::from(byte.is_some());
+        Ok(byte)
+    }
+
+    /// Goes over all that is left.
+    pub fn skip_to_end(&mut self) -> Result<(), SourceError> {
+        self.skip_bytes(self.bytes.saturating_sub(self.offset)).map(|_| ())
+    }
+
+    /// Goes over so many numbers or words; whether the file has them. The end of the last one's line comes next.
+    pub fn skip_words(&mut self, words: u64) -> Result<bool, SourceError> {
+        let (mut left, mut in_word) = (words, false);
+        while left > 0 {
+            let buffer = self.reader.fill_buf().map_err(|cause| file::io_error(self.path, cause))?;
+            if buffer.is_empty() {
+                return Ok(left == 1 && in_word);
+            }
+            let mut used = 0;
+            for byte in buffer {
+                let space = byte.is_ascii_whitespace();
+                if in_word && space {
+                    left -= 1;
+                }
+                in_word = !space;
+                if left == 0 {
+                    break;
+                }
+                used += 1;
+                self.line += u64::from(*byte == b'\n');
+            }
+            self.offset += used as u64;
+            self.reader.consume(used);
+        }
+        Ok(true)
+    }
+
     /// Something wrong with the last line.
     pub fn error(&self, problem: impl Into<String>) -> SourceError {
         line_error(self.path, self.line, problem)
@@ -87,24 +141,30 @@ pub(super) fn line_error(path: &Path, line: u64, problem: impl Into<String>) -> 
 /// Reads samples written out as numbers between spaces or commas.
 pub(super) fn read_samples(stream: &SampleStream, mut reader: impl BufRead) -> Result<Stored, SourceError> {
     let mut stored = stream.format.none();
+    let needed = stream.pick.end(stream.samples);
     with_samples!(&mut stored, samples => {
         // The memory grows with what is there: two bytes of text at the least for a sample of at most eight.
+        let mut words = 0;
         while (samples.len() as u64) < stream.samples {
-            let at = samples.len() as u64 + 1;
+            let is_read = stream.pick.run(words).0 == words;
+            words += 1;
             let word = next_word(&mut reader).map_err(|cause| file::io_error(stream.path, cause))?;
             let Some(word) = word else {
                 return Err(SourceError::Length {
                     path: stream.path.to_owned(),
-                    found: format!("{} numbers", samples.len()),
-                    expected: format!("{} need {}", stream.what, stream.samples),
-                    difference: format!("{} fewer than expected", stream.samples - samples.len() as u64),
+                    found: format!("{} numbers", words - 1),
+                    expected: format!("{} need {needed}", stream.what),
+                    difference: format!("{} fewer than expected", needed + 1 - words),
                     mend: (stream.mend)(None),
                 });
             };
+            if !is_read {
+                continue;
+            }
             samples.try_reserve(1).map_err(|_| stream.out_of_memory())?;
             samples.push(number(&word).ok_or_else(|| SourceError::Field {
                 path: stream.path.to_owned(),
-                field: format!("sample {at}"),
+                field: format!("sample {words}"),
                 problem: format!("expected a number of type {:?}, found `{word}`", stream.format),
             })?);
         }

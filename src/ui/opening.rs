@@ -1,7 +1,7 @@
 //! The questions which file to open, and which one to write.
 
 use super::Command;
-use crate::sources::{Kind, recognise};
+use crate::sources::{Kind, recognise, slices};
 use bevy_ecs::prelude::*;
 use egui::{Id, Key, Modal, ScrollArea, TextEdit, Ui};
 use serde::{Deserialize, Serialize};
@@ -58,6 +58,7 @@ const LOOKED_AT: usize = 4;
 
 const FOLDER: &str = "folder";
 const SLICES: &str = "DICOM folder";
+const PICTURES: &str = "folder of pictures";
 
 impl Chooser {
     /// Asks which file to open, with those of a folder to choose from.
@@ -127,7 +128,11 @@ fn kind_of(path: &Path, is_folder: bool) -> &'static str {
     if is_folder {
         let files = path.read_dir().into_iter().flatten().flatten().map(|entry| entry.path());
         let mut files = files.filter(|path| path.is_file()).take(LOOKED_AT);
-        return if files.any(|file| is_slice(&file)) { SLICES } else { FOLDER };
+        return match () {
+            () if files.any(|file| is_slice(&file)) => SLICES,
+            () if slices::is_stack(path) => PICTURES,
+            () => FOLDER,
+        };
     }
     match recognise(path) {
         Some(Kind::Mesh) => "mesh",
@@ -280,6 +285,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         std::fs::create_dir(at("zoo")).unwrap();
+        std::fs::create_dir(at("pages")).unwrap();
+        for name in ["pages/1.png", "pages/2.png"] {
+            std::fs::write(at(name), "").unwrap();
+        }
         std::fs::create_dir(at("slices")).unwrap();
         std::fs::write(at("slices/1"), [&[0; 128][..], b"DICM\x02"].concat()).unwrap();
         std::fs::write(at("a.ron"), "()").unwrap();
@@ -290,7 +299,8 @@ mod tests {
             .iter()
             .map(|entry| (entry.name.as_str(), kind_of(&at(&entry.name), entry.is_folder)))
             .collect();
-        let expected = [("slices", SLICES), ("zoo", FOLDER), ("a.ron", "scene"), ("B.obj", "mesh")];
+        let expected =
+            [("pages", PICTURES), ("slices", SLICES), ("zoo", FOLDER), ("a.ron", "scene"), ("B.obj", "mesh")];
         assert_eq!(kinds, expected);
         chooser.typed = "zoo".into();
         assert_eq!(chooser.choose(), None);

@@ -10,7 +10,7 @@ use egui::Ui;
 pub(super) fn show(ui: &mut Ui, world: &mut World, shown: &Shown, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let open = ui.button("Open…").on_hover_text(
-            "Show a scene, a mesh, a volume or a folder of DICOM slices (Ctrl+O, or drop files on the window)",
+            "Show a scene, a mesh, a volume or a folder of slices (Ctrl+O, or drop files on the window)",
         );
         if open.clicked() {
             commands.push(Command::AskOpen);

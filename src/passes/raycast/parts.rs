@@ -1,7 +1,7 @@
 //! How much a ray takes, and how it is shared out over several draws where that is more than one invocation may do.
 
 use super::pipeline::Variant;
-use crate::gpu::{Draw, Filtering, Gpu, GpuError, storage, uniform_buffer};
+use crate::gpu::{Draw, Filtering, Gpu, GpuError, ends, storage, uniform_buffer};
 use crate::mirrors::mirror;
 use crate::passes::voxels::Reading;
 use crate::view::Pixels;
@@ -219,21 +219,6 @@ fn bands(Pixels { columns, rows }: &Pixels, bytes: u64) -> impl Iterator<Item = 
     rows.clone().step_by(high).map(move |start| Pixels {
         columns: columns.clone(),
         rows: start..(start + high as u32).min(rows.end),
-    })
-}
-
-/// Of the times of many draws those that the first and the last of them write.
-fn ends<'a>(
-    all: &wgpu::RenderPassTimestampWrites<'a>,
-    is_first: bool,
-    is_last: bool,
-) -> Option<wgpu::RenderPassTimestampWrites<'a>> {
-    let beginning_of_pass_write_index = all.beginning_of_pass_write_index.filter(|_| is_first);
-    let end_of_pass_write_index = all.end_of_pass_write_index.filter(|_| is_last);
-    (is_first || is_last).then(|| wgpu::RenderPassTimestampWrites {
-        query_set: all.query_set,
-        beginning_of_pass_write_index,
-        end_of_pass_write_index,
     })
 }
 

@@ -1,7 +1,7 @@
 //! The draws of a frame, handed in a few at a time.
 
 use super::{Drawn, Targets};
-use crate::gpu::{Draw, Gpu, GpuError, begin_part};
+use crate::gpu::{Draw, Gpu, GpuError, begin_part, ends};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -64,12 +64,7 @@ pub(super) fn submit(
     let last = batches.len() - 1;
     let mut before = None;
     for (index, batch) in batches.into_iter().enumerate() {
-        let timing = timing.clone().map(|timing| wgpu::RenderPassTimestampWrites {
-            beginning_of_pass_write_index: timing.beginning_of_pass_write_index.filter(|_| index == 0),
-            end_of_pass_write_index: timing.end_of_pass_write_index.filter(|_| index == last),
-            ..timing
-        });
-        let timing = timing.filter(|_| index == 0 || index == last);
+        let timing = timing.as_ref().and_then(|all| ends(all, index == 0, index == last));
         let mut encoder =
             gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("surface") });
         let part = ((index == 0).then_some(clear), index == last);
@@ -111,7 +106,7 @@ mod tests {
     #[test]
     fn ranges_are_cut_into_even_pieces() {
         assert_eq!(ranges(3..10, 3).collect::<Vec<_>>(), [3..6, 6..9, 9..10]);
-        assert_eq!(ranges(0..5, u32::MAX).collect::<Vec<_>>(), [0..5]);
+        assert!(ranges(0..5, u32::MAX).eq(std::iter::once(0..5)));
         assert_eq!(ranges(4..4, 7).count(), 0);
     }
 }

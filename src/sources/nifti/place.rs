@@ -10,6 +10,9 @@ use crate::sources::{
     volume::Space,
 };
 
+/// The square of a quaternion's first number below which it is 0.
+const HALF_A_TURN: f64 = 1e-7;
+
 /// From one voxel to the next along each axis, and the centre of the first, mm; right, anterior, superior.
 #[derive(Debug, Clone, Copy)]
 struct Affine {
@@ -80,7 +83,9 @@ impl Header<'_> {
             return None;
         }
         let [b, c, d] = [0, 1, 2].map(|index| self.float(256, 352, index));
-        let a = (1.0 - (b * b + c * c + d * d)).max(0.0).sqrt();
+        // What is written in 32 bits says no more of half a turn: as the format's own library has it.
+        let squared = 1.0 - (b * b + c * c + d * d);
+        let a = if squared < HALF_A_TURN { 0.0 } else { squared.sqrt() };
         let turn = DMat3::from_quat(DQuat::from_xyzw(b, c, d, a).normalize());
         let z_sign = if self.pixdim(0) < 0.0 { -1.0 } else { 1.0 };
         let lengths = self.lengths();

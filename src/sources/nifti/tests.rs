@@ -129,6 +129,9 @@ fn the_affine_turns_the_volume_and_scaling_applies() {
     nifti.put(500, &3_i32.to_le_bytes());
     let volume = folder.read("a.nii", nifti.with(&ramp()));
     assert_eq!((volume.spacing, volume.sample([0, 0, 0])), (Vec3::splat(1e-3), Some(23.0)));
+    // Half a turn about a diagonal, as it is rounded to 32 bits: exactly that.
+    nifti.floats(256, 352, &[0.707_106_77, 0.707_106_77, 0.0]);
+    assert!(folder.read("a.nii", nifti.with(&ramp())).frame.degrees_off() < 1e-3);
     let mut nifti = Nifti::new(false, false, &[2, 3, 4], 4);
     nifti.floats(112, 0, &[2.0, -10.0]);
     let samples: Vec<u8> = (0..24_i16).flat_map(i16::to_le_bytes).collect();

@@ -32,6 +32,9 @@ fn attached_detached_packed_and_written_out_are_the_same() {
     assert_eq!(folder.read("a.nrrd", windows.concat()), raw);
     let text: Vec<String> = ramp(24).iter().map(u8::to_string).collect();
     assert_eq!(folder.read("a.nrrd", nrrd(&with("ascii"), text.join(" ").as_bytes())), raw);
+    let skipped = format!("note {}", text.join(" "));
+    let skipping = format!("{}\nbyte skip: 5", with("ascii"));
+    assert_eq!(folder.read("a.nrrd", nrrd(&skipping, skipped.as_bytes())), raw);
     let hex: String = ramp(24).iter().map(|byte| format!("{byte:02X}\n")).collect();
     assert_eq!(folder.read("a.nrrd", nrrd(&with("hex"), hex.as_bytes())), raw);
     folder.file("a.bin", ramp(24));
@@ -140,6 +143,11 @@ fn one_of_several_volumes_is_read_whichever_axis_they_lie_along() {
             ([2, 3, 2], Vec3::new(1.0, 1.0, 3.0), Some(12.0))
         );
     }
+    let text = "type: uchar\ndimension: 4\nsizes: 2 1 2 2\nencoding: ascii\nkinds: list domain domain domain";
+    let written = folder.chosen("a.nrrd", nrrd(text, b"0 1 2 3 4 5 6 7"), 1, None).unwrap();
+    assert_eq!(values(&written), [1.0, 3.0, 5.0, 7.0]);
+    let short = folder.chosen("a.nrrd", nrrd(text, b"0 1 2"), 1, None).unwrap_err();
+    assert!(short.contains("3 numbers; 1 x 2 x 2 voxels of 1 byte, entry 1 of 2 need 8 (5 fewer"), "{short}");
     let kept = folder.read("a.nrrd", of("1 6 4", "list domain domain", ""));
     assert_eq!((kept.size, kept.notes.len()), ([6, 4, 1], 0));
     // Each volume in a file of its own: only that of the one that is asked for is needed.

@@ -64,7 +64,7 @@ pub(super) fn world_of(space: &str) -> WorldOf {
 }
 
 /// Millimetres of a unit of length.
-pub(super) fn millimetres(unit: &str) -> Option<f64> {
+pub(in crate::sources) fn millimetres(unit: &str) -> Option<f64> {
     Some(match unit.to_lowercase().as_str() {
         "km" | "kilometer" | "kilometre" => 1e6,
         "m" | "meter" | "metre" | "meters" | "metres" => 1e3,

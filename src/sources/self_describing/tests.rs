@@ -141,10 +141,28 @@ fn what_is_no_volume_is_told_so_by_name() {
     );
     folder.file("b.mhd", "");
     assert!(folder.refusal("b.raw", [1, 2, 3]).contains("name their header, b.mhd"));
-    assert!(folder.refusal("a.vti", "<VTKFile>").contains("save it as legacy VTK"));
-    assert!(folder.refusal("a.nrrd", "").contains("it does not begin with `NRRD`"));
+    assert!(folder.refusal("a.vti", "nothing").contains("it has no element `<VTKFile`"));
+    assert!(folder.refusal("a.nrrd", "abc").contains("it does not begin with `NRRD`"));
     assert!(folder.refusal("a.gz", gzip(b"abc")).contains("what it unpacks to is not NIfTI"));
-    assert!(folder.refusal("a.xyz", "abc").contains("not a volume format that is known"));
+    let nothing = folder.refusal("a.xyz", "abc");
+    assert!(
+        nothing.starts_with(
+            "a.xyz: neither its content nor its name is of a format of volumes; read are NRRD, NIfTI"
+        ),
+        "{nothing}"
+    );
+    for (name, bytes, part) in [
+        ("a.nrrd", b"\x89PNG\r\n\x1a\n".as_slice(), "a single picture; name the folder of all slices"),
+        ("a.npz", b"PK\x03\x04", "an archive of NumPy arrays; unpack it with `unzip`"),
+        ("a.zip", b"PK\x03\x04", "an archive; unpack it"),
+        ("a.h5", b"\x89HDF\r\n\x1a\n", "HDF5"),
+        ("a.mhd", b"\xff\xfeN\0D\0", "text of UTF-16; convert it: iconv"),
+        ("nothing", b"", "the file is empty"),
+    ] {
+        let text = folder.refusal(name, bytes);
+        // Two lines: what it seems to be, and what is read.
+        assert!(text.contains(part) && text.lines().count() == 2, "{text}");
+    }
     assert!(folder.refusal("b.nrrd", gzip(b"NRRD0004\n")).contains("unpack it with `gunzip`"));
     let mut analyze = vec![0; 348];
     analyze[..4].copy_from_slice(&348_i32.to_le_bytes());

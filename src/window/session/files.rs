@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::PoisonError;
 
 impl Session {
-    /// Shows other files instead: one scene as it is; meshes, volumes and folders of DICOM slices, or several files, as a scene that is in no
+    /// Shows other files instead: one scene as it is; meshes, volumes and folders of slices, or several files, as a scene that is in no
     /// file yet. Where edits would be lost, the panels ask first what is to become of them. What cannot be opened is told, and what is shown
     /// stays.
     pub fn open(&mut self, files: &[PathBuf]) {
