@@ -132,7 +132,7 @@ fn a_mask_lies_on_its_scan() {
     assert_eq!(text.matches("place: Patient").count(), 2, "{text}");
     // As its own scene shows it: the camera looks along z, +x on the right.
     let text = std::fs::read_to_string(reported(&format!("{folder}/overlay.ron"))).unwrap();
-    let mut placed = text.clone();
+    let mut placed = text;
     for file in ["scan.nii", "mask.nii"] {
         let path = reported(&format!("{folder}/{file}"));
         placed =

@@ -319,7 +319,6 @@ fn everything_about_scattering_can_be_written() {
     )
     .load(&[]);
     let bunny = Subsurface {
-        g: None,
         material: Material::Preset("skin".into()),
         g: None,
         model: DipoleModel::DirectionalDipole,
@@ -535,7 +534,7 @@ fn what_other_programs_call_it_is_understood() {
             "{components}: {errors:?}"
         );
     }
-    let errors = Files::scene("\"it\": ( Mesh: Sphere() )").errors(&["it.Material.diffuse=(1, 0, 0)"]);
+    let errors = Files::scene("\"it\": ( Mesh: Sphere() )").errors(&["it.Color.diffuse=(1, 0, 0)"]);
     assert!(errors[0].ends_with("; did you mean `it.Phong.diffuse`?"), "{errors:?}");
 }
 

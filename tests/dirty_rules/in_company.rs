@@ -173,6 +173,7 @@ pub const TABLE: Table = Table {
         ("wax.Shading", "Local", ""),
         // One that does so in maps, and its camera.
         ("jar.Transform.translation", "(8.0, 0.5, 0.0)", JAR_MOVED),
+        ("jar.Subsurface.g", "0.5", JAR_SCATTERS_OTHERWISE),
         ("jar.Subsurface.material.0", "\"marble\"", JAR_SCATTERS_OTHERWISE),
         ("jar.ScatteringMaps.cameras", "3", JAR_MAPPED),
         ("jar.ScatteringMaps.resolution.0", "18", JAR_MAPPED),

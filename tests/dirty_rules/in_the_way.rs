@@ -28,7 +28,7 @@ const SCENE: &str = r#"(
         "wax": (
             Transform: (translation: (0.0, 0.0, 0.0)),
             Mesh: Sphere(radius: 1.5, subdivisions: 2),
-            Subsurface: (material: Preset("skin1")),
+            Subsurface: (material: Preset("skin1"), g: 0.2),
             ScatteringMaps: (samples: 4, progressive: false),
             Shading: Scattering,
         ),
@@ -93,6 +93,8 @@ pub const TABLE: Table = Table {
             "LightVolume(g: 0.2, resolution: 0.5)",
             "light_volume 2, scattered_light 2, summed_light 1, light_gbuffer 1, dimmed_gbuffer 1, scattered_radiosity 1, combine 1",
         ),
+        ("wax.Subsurface.g", "0.3", "scattered_radiosity 2, combine 1"),
+        ("wax.Subsurface.g", "None", "scattered_radiosity 2, combine 1"),
         ("wax.Subsurface.material.0", "\"marble\"", "scattered_radiosity 2, combine 1"),
         ("wax.Shading", "Local", ""),
     ],
