@@ -245,9 +245,31 @@ struct Sample {
     thinned: f32,
 }
 
+// Optical depth from a sample to a light. Where a cell of the light volume takes much of the light, what is interpolated in it is far from what is there:
+// then the ray looks through the slices next to the sample for itself, and finds in the light volume what had come through until there.
+fn depth_to_light(way: Way, volume: VolumeInstance, light: u32, on_way: LightWay, sample: Sample) -> f32 {
+    let index = first_sweep(way.index) + light;
+    let slices = near_slices(way.index);
+    if !ANY_NEAR || slices == 0u {
+        return light_depth_on(index, on_way, sample.along);
+    }
+    let step = light_step(index);
+    let samples = slices * NEAR_SAMPLES;
+    // No further than to where the light comes in.
+    let near = min(f32(slices), reach_on(on_way, sample.along));
+    let part = near / f32(samples);
+    var extinction = 0.0;
+    for (var i = 0u; i < samples; i += 1u) {
+        let place = sample.place - step.xyz * (part * (f32(i) + 0.5));
+        extinction += found_at(way.index, volume, way.lookup, way.classification, place).extinction;
+    }
+    return light_depth(index, sample.place - step.xyz * near) + part * step.w * extinction;
+}
+
 // Light that is scattered towards the eye: the source function where the albedo is `colour`. Where light is scattered often, what a forward
 // peak scatters counts as light that was not (`src/optics/peak.rs`).
-fn scatter(index: u32, volume: VolumeInstance, sample: Sample, ray: Ray, ways: array<LightWay, LIGHT_WAYS>) -> vec3f {
+fn scatter(way: Way, volume: VolumeInstance, sample: Sample, ray: Ray, ways: array<LightWay, LIGHT_WAYS>) -> vec3f {
+    let index = way.index;
     let place = sample.place;
     let albedo = min(sample.colour, vec3f(1.0));
     let is_often = ANY_OFTEN && volume.lighting >= 4u;
@@ -260,7 +282,7 @@ fn scatter(index: u32, volume: VolumeInstance, sample: Sample, ray: Ray, ways: a
         normal = normal_at(index, volume, place, ray);
     }
     for (var i = 0u; i < LIGHTS; i += 1u) {
-        let depth = light_depth_on(first_sweep(index) + i, ways[i], sample.along);
+        let depth = depth_to_light(way, volume, i, ways[i], sample);
         let light = lights[i].irradiance * light_seen(first_sweep(index) + i, place);
         if ANY_LEANING {
             let phase = min(henyey_greenstein(-lights[i].to_light, -ray.direction, volume.g), cap);
@@ -300,12 +322,12 @@ fn thinning(volume: VolumeInstance, colour: vec3f) -> f32 {
 }
 
 // What a piece of the medium sends to the eye, per share that it absorbs.
-fn source(index: u32, volume: VolumeInstance, sample: Sample, ray: Ray, ways: array<LightWay, LIGHT_WAYS>) -> vec3f {
+fn source(way: Way, volume: VolumeInstance, sample: Sample, ray: Ray, ways: array<LightWay, LIGHT_WAYS>) -> vec3f {
     if ANY_GRADIENT && volume.lighting == 1u {
-        return shade(index, volume, sample.colour, sample.place, ray);
+        return shade(way.index, volume, sample.colour, sample.place, ray);
     }
     if ANY_SCATTERING && (volume.lighting == 2u || volume.lighting >= 4u) {
-        return scatter(index, volume, sample, ray, ways);
+        return scatter(way, volume, sample, ray, ways);
     }
     return select(sample.colour, volume.emission * sample.colour, volume.lighting == 3u);
 }
@@ -500,7 +522,7 @@ fn show(
     var colour = sample.colour;
     if ANY_LIT {
         sample.place = way.start + way.direction * sample.along;
-        colour = source(way.index, volume, sample, ray, ways);
+        colour = source(way, volume, sample, ray, ways);
     }
     var gathered = before;
     if ANY_PEAK {

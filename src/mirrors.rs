@@ -115,7 +115,7 @@ pub fn generated_modules() -> Vec<(&'static str, String)> {
         passes::volume_shadow::module(&[true, false], 36),
         passes::raycast::scattered_module(&[TowardsEye, Nothing], 40),
         passes::raycast::parts_module(44),
-        passes::raycast::sweeps_module(&[1, 1]),
+        passes::raycast::sweeps_module(&[1, 1], &[0, 2]),
         passes::scattered_light::leaning_module(true),
         passes::scattered_radiosity::sampling_module(&Default::default(), 5),
         passes::scattered_radiosity::listing_module(false),

@@ -356,3 +356,121 @@ fn direct_light_is_of_second_order_in_the_voxel() {
         assert!((1.7..2.4).contains(&order), "order {order}: {errors:?}");
     }
 }
+
+/// Balls of 25 mm with a sharp edge, in voxels of these sizes.
+const GRIDS: [([usize; 3], [f32; 3]); 3] =
+    [([60, 60, 12], [1.0, 1.0, 5.0]), ([30, 30, 30], [2.0, 2.0, 2.0]), ([60, 60, 60], [1.0, 1.0, 1.0])];
+
+fn in_ron(numbers: &[impl std::fmt::Debug]) -> String {
+    format!("{numbers:?}").replace('[', "(").replace(']', ")")
+}
+
+/// A ball, as it is interpolated.
+struct Ball {
+    size: [usize; 3],
+    spacing: [f32; 3],
+}
+
+impl Ball {
+    fn value(&self, voxel: [usize; 3]) -> f32 {
+        let square = |axis: usize| {
+            ((voxel[axis] as f32 + 0.5 - self.size[axis] as f32 / 2.0) * self.spacing[axis]).powi(2)
+        };
+        (1.2 - (0..3).map(square).sum::<f32>().sqrt() / 25.0).clamp(0.0, 1.0)
+    }
+
+    /// Extinction at a place, in mm from the middle, as `FUNCTION` has it.
+    fn extinction(&self, place: [f64; 3]) -> f64 {
+        let at = [0, 1, 2]
+            .map(|axis| place[axis] / f64::from(self.spacing[axis]) + self.size[axis] as f64 / 2.0 - 0.5);
+        if (0..3).any(|axis| at[axis] < -0.5 || at[axis] > self.size[axis] as f64 - 0.5) {
+            return 0.0;
+        }
+        let value = (0..8).map(|corner| {
+            let mut weight = 1.0;
+            let voxel = [0, 1, 2].map(|axis| {
+                let low = at[axis].floor();
+                let above = (corner >> axis) & 1;
+                weight *= if above == 1 { at[axis] - low } else { 1.0 - (at[axis] - low) };
+                (low + f64::from(above)).clamp(0.0, self.size[axis] as f64 - 1.0) as usize
+            });
+            weight * f64::from(self.value(voxel))
+        });
+        let opacity = ((value.sum::<f64>() - 0.45) / 0.1).clamp(0.0, 1.0) * 0.8;
+        -(-opacity).ln_1p()
+    }
+
+    /// Radiance along a ray, of light that was scattered once, in mm and for an irradiance of 4 pi.
+    fn radiance(&self, eye: [f64; 3], direction: [f64; 3], to_light: [f64; 3]) -> f64 {
+        const STEP: f64 = 0.2;
+        let along = |from: [f64; 3], direction: [f64; 3], t: f64| {
+            [0, 1, 2].map(|axis| from[axis] + direction[axis] * t)
+        };
+        let (mut sum, mut depth) = (0.0, 0.0);
+        for index in 0..400 {
+            let place = along(eye, direction, 95.0 + (f64::from(index) + 0.5) * STEP);
+            let here = self.extinction(place) * STEP;
+            if here > 0.0 && depth < 7.0 {
+                let towards =
+                    |index| self.extinction(along(place, to_light, (f64::from(index) + 0.5) * STEP));
+                let arrives = (-(0..280).map(towards).sum::<f64>() * STEP).exp();
+                sum += (-depth - here / 2.0).exp() * here * arrives;
+            }
+            depth += here;
+        }
+        sum
+    }
+}
+
+/// In thick slices and coarse voxels, cells of a light volume take several times what is left of a light.
+#[needs(gpu)]
+#[test]
+fn light_in_dense_media_is_right_however_large_the_voxels() {
+    let mut studio = Studio::new();
+    let unit = |v: [f64; 3]| {
+        let length = v.iter().map(|part| part * part).sum::<f64>().sqrt();
+        v.map(|part| part / length)
+    };
+    let eye = [40.0, 60.0, 110.0];
+    let (forward, to_light) = (unit(eye.map(|part| -part)), unit([0.3, 1.0, 1.0]));
+    let up = unit([0, 1, 2].map(|axis| f64::from(u8::from(axis == 1)) - forward[1] * forward[axis]));
+    for (size, spacing) in GRIDS {
+        let ball = Ball { size, spacing };
+        studio.volume("ball.raw", size, |voxel| ball.value(voxel));
+        let mut seen = |lighting: &str| {
+            let scene = format!(
+                "(entities: {{ \"eye\": ( ViewCamera: (eye: (40.0, 60.0, 110.0)) ),
+                    \"sun\": ( DirectionalLight: (direction: (-0.3, -1.0, -1.0), irradiance: (3.0, 3.0, 3.0)) ),
+                    \"v\": ( Volume: Raw(path: \"ball.raw\", size: {0}, format: F32, spacing: {1}), VolumeLighting: {lighting},
+                        RayCast: (step: {2}, early_termination: 0.9995),
+                        TransferFunction: (opacity_length: 1.0, domain: (0.0, 1.0), points: [(0.0, (0.9, 0.9, 0.9), 0.0), (0.45, (0.9, 0.9, 0.9), 0.0),
+                            (0.55, (0.9, 0.9, 0.9), 0.8), (1.0, (0.9, 0.9, 0.9), 0.8)]) ) }})",
+                in_ron(&size),
+                in_ron(&spacing),
+                0.1 / spacing[0]
+            );
+            studio.radiance(&scene, 1, 64).iter().map(|pixel| f64::from(pixel[0])).collect::<Vec<_>>()
+        };
+        let found = seen("SingleScattering()");
+        let exact: Vec<f64> = (0..64)
+            .map(|row| {
+                let height = (1.0 - 2.0 * (f64::from(row) + 0.5) / 64.0) * 22.5f64.to_radians().tan();
+                let direction = unit([0, 1, 2].map(|axis| forward[axis] + height * up[axis]));
+                ball.radiance(eye, direction, to_light) * 0.9 * 3.0 / (4.0 * std::f64::consts::PI)
+            })
+            .collect();
+        // Not at the rim, which one grid or the other draws a little too wide.
+        let lit: Vec<usize> = (0..64).filter(|row| exact[*row] > 0.02).collect();
+        let lit = &lit[2..lit.len() - 2];
+        let mean = lit.iter().map(|row| exact[*row]).sum::<f64>() / lit.len() as f64;
+        let bias = lit.iter().map(|row| found[*row] - exact[*row]).sum::<f64>() / lit.len() as f64 / mean;
+        let squares =
+            lit.iter().map(|row| (found[*row] - exact[*row]).powi(2)).sum::<f64>() / lit.len() as f64;
+        let error = squares.sqrt() / mean;
+        eprintln!(
+            "voxels of {spacing:?} mm: {bias:+.4} in the mean, {error:.4} in a pixel, {} pixels",
+            lit.len()
+        );
+        assert!(bias.abs() < 0.02 && error < 0.03, "voxels of {spacing:?} mm: {bias}, {error}");
+    }
+}

@@ -10,6 +10,8 @@ struct Sweep {
     size: vec3f,
     // How far light travels from slice to slice, in the texture of the volume.
     step: vec3f,
+    // The same in scene units.
+    slice: f32,
 }
 
 // How far light has come through the volume to a place in it, in slices.

@@ -12,7 +12,7 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 /// | | `specular`: strength of the white highlight | – | at least 0 | 0.3 |
 /// | | `shininess`: Blinn's exponent | – | 0 to 10,000 | 16 |
 /// | `SingleScattering` | `g`: mean cosine of scattering | – | -0.999 to 0.999 | 0 |
-/// | | `resolution`: nodes per voxel along each axis, at which the light that arrives is kept | – | 1/8 to 1 | 1 |
+/// | | `resolution`: nodes per voxel along each axis, at which the light that arrives is kept; more along long edges of dense voxels | – | 1/8 to 1 | 1 |
 /// | `LightVolume` | `cone_angle`: half angle of the cone in which scattered light travels, or `Auto` | degrees | 1 to 89 | `Auto` |
 /// | | `resolution`: as above; scattered light is kept at a quarter of it | – | 1/8 to 1 | 1 |
 /// | | `blend`: count all faces through which light enters a cell, not only those across its nearest axis | – | – | true |
@@ -30,7 +30,7 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 /// In the other two the colour of the transfer function is the albedo, 0 to 1 in each channel (more counts as 1), and only lights give light.
 /// *Single scattering* is light that was scattered once: albedo p(g, cos) E exp(-tau) from each piece of the medium, with tau the optical
 /// depth towards the light and p Henyey and Greenstein's phase function. It is exact but for errors of second order in the voxel
-/// and the step of the ray. The *light volume* (after Ropinski and others 2010) adds light that was scattered more often: what does not
+/// and the step of the ray; where a voxel takes more than an optical depth of a half, rays look for the light in front of each of their samples for themselves. The *light volume* (after Ropinski and others 2010) adds light that was scattered more often: what does not
 /// escape diffuses ([`optics::diffusion`](crate::optics::diffusion)), an approximation that gives back no more light than it receives; see
 /// `docs/architecture.md` for how far off it is. `cone_angle: Auto` is 63 degrees, as far as light diffuses in the medium; a narrower cone keeps it
 /// closer to where it was scattered first.

@@ -55,6 +55,11 @@ impl Classified {
         (format.scale / (high - low), (format.offset - low) / (high - low))
     }
 
+    /// The greatest extinction of any value, per scene unit.
+    pub fn greatest_extinction(&self) -> f64 {
+        f64::from(self.table.entries.iter().map(|entry| entry.w).fold(0.0, f32::max))
+    }
+
     /// With the versions of what stood here before, as far as it is the same; `next` where it is not.
     fn versioned(self, former: Option<&Self>, next: u64) -> Self {
         let next = Versions { extinction: next, table: next };

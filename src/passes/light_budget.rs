@@ -1,6 +1,7 @@
 //! How many lights have products of their own.
 
 use super::classify::Classified;
+use super::light_volume::cells::Cells;
 use super::light_volume::{bytes_of, lighting_in_force, scene_from_texture};
 use super::raycast::textures_for_volumes;
 use super::volume_shadow::VolumeShadows;
@@ -70,15 +71,16 @@ pub(crate) fn share_out(
         };
         // Of light that was scattered before, and of light towards the eye.
         textures_left = textures_left.saturating_sub(2);
-        let texture_from_scene = scene_from_texture(loaded, placement, &settings).inverse();
-        scattering.push((loaded.data.size, resolution, texture_from_scene, shadows));
+        let scene_from_texture = scene_from_texture(loaded, placement, &settings);
+        let cells = Cells::of(&gpu, (loaded, classified), resolution, scene_from_texture);
+        scattering.push((cells, scene_from_texture.inverse(), shadows));
     }
     let mut count = 0;
     for (light, to_light) in &lights {
-        let of_volume = |(size, resolution, texture_from_scene, shadows): &(_, _, glam::DAffine3, _)| {
+        let of_volume = |(cells, texture_from_scene, shadows): &(Cells, glam::DAffine3, _)| {
             let has_shadow = Option::<&VolumeShadows>::is_some_and(*shadows, |all| all.of(*light).is_some());
             let direction = texture_from_scene.transform_vector3(-*to_light);
-            (bytes_of(&gpu, *size, *resolution, direction), 1 + usize::from(has_shadow))
+            (bytes_of(*cells, direction), 1 + usize::from(has_shadow))
         };
         let (bytes, textures) = scattering.iter().map(of_volume).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
         if count > 0 && (bytes > bytes_left || textures > textures_left) {

@@ -5,11 +5,12 @@
 
 use super::classify::Classified;
 use super::light_budget::KeptLights;
-use super::light_volume::lighting_in_force;
+use super::light_volume::cells::Cells;
 use super::light_volume::medium::{Medium, MediumKernels};
+use super::light_volume::{lighting_in_force, scene_from_texture};
 use super::upload::VolumeTexture;
 use super::voxels::Reading;
-use crate::components::{SceneSettings, Shading, VolumeLighting};
+use crate::components::{Placement, SceneSettings, Shading, VolumeLighting};
 use crate::failure::Failure;
 use crate::gpu::{Gpu, GpuError, Grid, Invocations, PassTimer, binding, uniform_buffer};
 use crate::loading::LoadedVolume;
@@ -56,6 +57,7 @@ const COARSER: f64 = 4.0;
 
 /// Cells along an axis: at least so many, or the voxels there are, and at most so many.
 const FEWEST: u32 = 16;
+const FEWEST_DENSE: u32 = 32;
 const MOST: u32 = 128;
 
 type Volumes<'w, 's> = Query<
@@ -66,6 +68,7 @@ type Volumes<'w, 's> = Query<
         &'static LoadedVolume,
         &'static Classified,
         &'static VolumeTexture,
+        &'static Placement,
         &'static VolumeLighting,
         Option<&'static Shading>,
         Option<&'static LightCells>,
@@ -85,7 +88,7 @@ pub(crate) fn run(
         commands.entity(entity).remove::<LightCells>();
     }
     let mut held = 0;
-    for (entity, loaded, classified, texture, lighting, shading, kept) in &volumes {
+    for (entity, loaded, classified, texture, placement, lighting, shading, kept) in &volumes {
         if failure.stands_on(entity) {
             continue;
         }
@@ -97,7 +100,9 @@ pub(crate) fn run(
             commands.entity(entity).remove::<LightCells>();
             continue;
         };
-        let cells = UVec3::from(loaded.data.size.map(|voxels| cells_along(voxels, resolution)));
+        let scene_from_texture = scene_from_texture(loaded, placement, &settings);
+        let fine = Cells::of(&gpu, (loaded, classified), 1.0, scene_from_texture);
+        let cells = coarser(fine, loaded.data.size, resolution);
         let recipe = Recipe { cells, volume: texture.view.clone(), classified: classified.versions.table };
         if let Some(kept) = kept.filter(|kept| kept.recipe == recipe) {
             held += kept.grid.bytes();
@@ -117,9 +122,15 @@ pub(crate) fn run(
     report.hold("light_cells", held);
 }
 
-fn cells_along(voxels: u32, resolution: f32) -> u32 {
-    let wanted = (f64::from(voxels) * f64::from(resolution) / COARSER).ceil() as u32;
-    wanted.clamp(voxels.min(FEWEST), MOST)
+/// The cells of scattered light, for those of direct light at a resolution of 1.
+fn coarser(fine: Cells, voxels: [u32; 3], resolution: f32) -> UVec3 {
+    let along = |axis: usize| {
+        let wanted = (f64::from(voxels[axis]) * f64::from(resolution) / COARSER).ceil() as u32;
+        let fewest =
+            if fine.is_dense { fine.count[axis].min(FEWEST_DENSE) } else { voxels[axis].min(FEWEST) };
+        wanted.clamp(fewest, MOST)
+    };
+    UVec3::new(along(0), along(1), along(2))
 }
 
 fn make(

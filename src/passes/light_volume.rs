@@ -4,6 +4,7 @@
 //! columns along the light, see [`sweep`]. Reruns for a volume when its data or transfer function changes, and for a light when it turns against
 //! the volume; a driver without memory fails it. Colours of lights and of transfer functions, the viewer and the step of rays change nothing.
 
+pub mod cells;
 pub mod lookup;
 pub mod medium;
 pub mod sweep;
@@ -20,9 +21,10 @@ use crate::loading::LoadedVolume;
 use crate::view::lights_in_order;
 use crate::{mirrors::mirror, report::Report};
 use bevy_ecs::prelude::*;
-use glam::{DAffine3, DVec3, UVec3};
+use cells::Cells;
+use glam::{DAffine3, DVec3};
 use medium::{Medium, MediumKernels};
-use sweep::Sweep;
+use sweep::{Sweep, SweepUniform};
 
 /// The light volumes of a volume, one for each light, in the order of the lights.
 #[derive(Component, Debug, Default)]
@@ -48,6 +50,16 @@ impl LightVolume {
     pub fn new(light: Entity, grid: Grid, recipe: Recipe, version: u64) -> Self {
         Self { light, grid, sweep: recipe.sweep, recipe, version }
     }
+
+    /// Slices in front of a place that rays look through for themselves.
+    pub fn near(&self) -> u32 {
+        self.recipe.near
+    }
+
+    /// What a shader needs to look it up.
+    pub fn lookup(&self) -> SweepUniform {
+        self.sweep.lookup(self.recipe.slice)
+    }
 }
 
 /// Everything that the texels depend on.
@@ -56,6 +68,8 @@ pub(crate) struct Recipe {
     sweep: Sweep,
     /// Scene units that light travels from slice to slice.
     slice: f64,
+    /// Slices in front of a place that rays look through for themselves.
+    near: u32,
     volume: wgpu::TextureView,
     classified: u64,
 }
@@ -191,23 +205,16 @@ pub(crate) fn recipe(
     scene_from_texture: DAffine3,
 ) -> Recipe {
     let direction = scene_from_texture.inverse().transform_vector3(-to_light);
-    let sweep = Sweep::new(cells(gpu, loaded.data.size, resolution), direction);
+    let Cells { count, near, .. } = Cells::of(gpu, (loaded, classified), resolution, scene_from_texture);
+    let sweep = Sweep::new(count, direction);
     let slice = scene_from_texture.transform_vector3(sweep.step()).length();
-    Recipe { sweep, slice, volume: texture.view.clone(), classified: classified.versions.extinction }
+    Recipe { sweep, slice, near, volume: texture.view.clone(), classified: classified.versions.extinction }
 }
 
-/// Bytes of the light volume of a volume of so many voxels, for light that travels in a direction given in the texture's space.
-pub(crate) fn bytes_of(gpu: &Gpu, size: [u32; 3], resolution: f32, direction: DVec3) -> u64 {
-    let texels = Sweep::new(cells(gpu, size, resolution), direction).size();
+/// Bytes of a light volume of so many cells, for light that travels in a direction given in the texture's space.
+pub(crate) fn bytes_of(cells: Cells, direction: DVec3) -> u64 {
+    let texels = Sweep::new(cells.count, direction).size();
     4 * texels.to_array().into_iter().map(u64::from).product::<u64>()
-}
-
-/// Cells along each axis of a volume.
-fn cells(gpu: &Gpu, size: [u32; 3], resolution: f32) -> UVec3 {
-    // Columns beside the volume and the last slice take part of the texture.
-    let limit = gpu.device.limits().max_texture_dimension_3d - 8;
-    let along = |voxels: u32| ((f64::from(voxels) * f64::from(resolution)).ceil() as u32).clamp(1, limit);
-    UVec3::from(size.map(along))
 }
 
 pub(crate) fn make(

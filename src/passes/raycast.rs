@@ -275,6 +275,8 @@ fn prepare(
     let light_volumes = shadows(volumes).iter().map(Option::is_some).collect();
     let lights_of = |volume: &VolumeData| volume.light_volumes.map_or(0, |own| own.0.len() as u32);
     let light_counts = volumes.iter().map(lights_of).collect();
+    let near_of = |volume: &VolumeData| volume.light_volumes?.0.iter().map(LightVolume::near).max();
+    let near = volumes.iter().map(|volume| near_of(volume).unwrap_or(0)).collect();
     let scattered = volumes.iter().map(scattered_of).collect();
     let manners = volumes.iter().map(manner_of).collect();
     let light_capacity = frame.light_capacity;
@@ -285,6 +287,7 @@ fn prepare(
         kinds,
         light_volumes,
         light_counts,
+        near,
         scattered,
         light_filtering: lookup::filtering(gpu),
         share: None,

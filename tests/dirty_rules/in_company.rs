@@ -34,7 +34,7 @@ pub const SCENE: &str = r#"(
         "jar": (
             Transform: (translation: (8.0, 0.0, 0.0)),
             Mesh: Sphere(radius: 2.0, subdivisions: 1),
-            Subsurface: (material: Preset("skin1")),
+            Subsurface: (material: Preset("skin1"), g: Some(0.2)),
             ScatteringMaps: (cameras: 2, samples: 4, resolution: Texels(16, 20), progressive: false),
         ),
         "above": ( ScatteringCamera: (target: "jar", direction: (0.1, -1.0, 0.0)) ),
@@ -175,6 +175,8 @@ pub const TABLE: Table = Table {
         ("jar.Transform.translation", "(8.0, 0.5, 0.0)", JAR_MOVED),
         ("jar.Subsurface.g", "0.5", JAR_SCATTERS_OTHERWISE),
         ("jar.Subsurface.material.0", "\"marble\"", JAR_SCATTERS_OTHERWISE),
+        ("jar.Subsurface.g", "0.7", JAR_SCATTERS_OTHERWISE),
+        ("jar.Subsurface.g", "None", JAR_SCATTERS_OTHERWISE),
         ("jar.ScatteringMaps.cameras", "3", JAR_MAPPED),
         ("jar.ScatteringMaps.resolution.0", "18", JAR_MAPPED),
         ("jar.ScatteringMaps.resolution.1", "18", JAR_MAPPED),

@@ -25,11 +25,15 @@ fn light_way(index: u32, start: vec3f, direction: vec3f) -> LightWay {
 fn light_depth_on(index: u32, way: LightWay, along: f32) -> f32 {
     return 0.0;
 }
+fn light_step(index: u32) -> vec4f {
+    return vec4f(0.0);
+}
 ";
 
 /// The module `light_volumes` of a shader that looks up `count` light volumes: `light_depth(index, place)` is the optical depth
 /// towards the light, `light_left` the share of it that arrives, and `light_depth_on(index, way, along)` the depth on a straight way, of which
-/// `light_way` has found out before what it takes. Its bindings, from `first` on: the sweeps, a sampler, and one texture
+/// `light_way` has found out before what it takes. `light_step` is how far light travels from slice to slice, in the texture of the volume
+/// and in scene units. Its bindings, from `first` on: the sweeps, a sampler, and one texture
 /// each; none at all for none.
 pub(crate) fn light_volumes_module(
     count: usize,
@@ -44,7 +48,7 @@ pub(crate) fn light_volumes_module(
          @group(0) @binding({}) var repeating: sampler;\n",
         first + 1
     );
-    let (mut depths, mut ways, mut on_ways) = (String::new(), String::new(), String::new());
+    let [mut depths, mut ways, mut on_ways, mut steps] = [const { String::new() }; 4];
     for index in 0..count {
         let binding = first + 2 + index;
         // Writing to a String cannot fail.
@@ -67,6 +71,7 @@ pub(crate) fn light_volumes_module(
         }}"
         );
         let _ = writeln!(ways, "        {label}: {{ return way_through({sweep}, start, direction); }}");
+        let _ = writeln!(steps, "        {label}: {{ return vec4f({sweep}.step, {sweep}.slice); }}");
         let _ = writeln!(
             on_ways,
             "        {label}: {{
@@ -85,6 +90,9 @@ fn light_way(index: u32, start: vec3f, direction: vec3f) -> LightWay {{
 }}
 fn light_depth_on(index: u32, way: LightWay, along: f32) -> f32 {{
     switch index {{\n{on_ways}    }}
+}}
+fn light_step(index: u32) -> vec4f {{
+    switch index {{\n{steps}    }}
 }}
 fn light_left(index: u32, place: vec3f) -> f32 {{
     return exp(-light_depth(index, place));
@@ -124,7 +132,7 @@ pub(crate) fn bindings(count: usize, filtering: Filtering) -> Vec<wgpu::BindingT
 
 /// The sweeps of light volumes, in the order in which they are bound.
 pub(crate) fn sweeps(gpu: &Gpu, volumes: &[&LightVolume]) -> wgpu::Buffer {
-    let sweeps: Vec<SweepUniform> = volumes.iter().map(|volume| volume.sweep.lookup()).collect();
+    let sweeps: Vec<SweepUniform> = volumes.iter().map(|volume| volume.lookup()).collect();
     uniform_array(gpu, "sweeps", &sweeps, sweeps.len().max(1))
 }
 

@@ -82,8 +82,8 @@ impl Sweep {
         (DVec3::select(forwards, slices, -slices), DVec3::select(forwards, DVec3::ZERO, slices))
     }
 
-    /// What a shader needs to look the columns up.
-    pub fn lookup(&self) -> SweepUniform {
+    /// What a shader needs to look the columns up, where slices are so many scene units apart along the light.
+    pub fn lookup(&self, slice: f64) -> SweepUniform {
         let (scale, offset) = self.reach();
         SweepUniform {
             texel_from_texture: DMat4::from(self.texel_from_texture()).as_mat4(),
@@ -91,6 +91,7 @@ impl Sweep {
             reach_offset: offset.as_vec3(),
             size: self.size().as_vec3(),
             step: self.step().as_vec3(),
+            slice: slice as f32,
         }
     }
 
@@ -115,6 +116,7 @@ mirror! {
         reach_offset: Vec3,
         size: Vec3,
         step: Vec3,
+        slice: f32,
     }
 }
 

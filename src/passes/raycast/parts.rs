@@ -43,6 +43,9 @@ const KEPT_BYTES: u64 = 32 << 20;
 /// Draws that are handed in before the first of them is waited for.
 const AHEAD: u64 = 64;
 
+/// Samples in each slice that rays look through on the way to a light.
+const NEAR_SAMPLES: u64 = 4;
+
 /// What one volume takes of a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Stretch {
@@ -131,7 +134,9 @@ fn of_segment(variant: &Variant, lights: u32) -> u64 {
     let by_hand = |reading: &Reading| reading.filtering == Filtering::Shader && !reading.is_nearest;
     let texel = if variant.readings.iter().any(by_hand) { 5 } else { 0 };
     let surface = if variant.manners.iter().any(|manner| manner.has_surfaces) { 9 } else { 0 };
+    let near = u64::from(variant.near.iter().copied().max().unwrap_or(0));
     let light = if variant.light_filtering == Filtering::Shader { 9 } else { 0 };
+    let light = light + if near > 0 { near * NEAR_SAMPLES * (1 + texel) + 1 } else { 0 };
     1 + 2 * texel + variant.kinds.loops(u64::from(lights), surface.max(6 * texel), light)
 }
 
@@ -141,7 +146,7 @@ pub fn module(share: Option<Share>, binding: usize) -> (&'static str, String) {
     let text = format!(
         "const IN_PARTS = {};\nconst PART_BINDING = {binding};\n// Segments between two looks at the bricks: lanes that march together \
          stay together.\nconst RUN = {run}.0;\nconst MOST_WORK = {most_work}u;\nconst WORK_OF_SEGMENT = {of_segment}u;\n\
-         const WORK_OF_RUN = {OF_RUN}u;\nconst WORK_OF_LEAP = {of_leap}u;\nconst WORK_OF_TURN = {of_turn}u;\n",
+         const WORK_OF_RUN = {OF_RUN}u;\nconst WORK_OF_LEAP = {of_leap}u;\nconst WORK_OF_TURN = {of_turn}u;\nconst NEAR_SAMPLES = {NEAR_SAMPLES}u;\n",
         share.is_some()
     );
     ("parts", text)

@@ -25,6 +25,8 @@ pub struct Variant {
     pub light_volumes: Vec<bool>,
     /// How many of them are each volume's.
     pub light_counts: Vec<u32>,
+    /// How many slices of them rays look through for themselves, in each volume.
+    pub near: Vec<u32>,
     /// What scattered light each volume has.
     pub scattered: Vec<Scattered>,
     /// Who interpolates light volumes.
@@ -82,7 +84,7 @@ pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
                 parts,
                 ("volumes", voxels::module(&variant.readings, FIXED_BINDINGS)),
                 variant.kinds.module(),
-                sweeps_module(&variant.light_counts),
+                sweeps_module(&variant.light_counts, &variant.near),
                 classifications_module(&variant.manners, first_classified),
                 lights_module(variant.light_capacity),
                 lookup::light_volumes_module(variant.light_volumes.len(), filtering, first),
@@ -99,19 +101,21 @@ pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
     )
 }
 
-/// The WGSL module `first_sweeps`: which light volume is the first of each volume.
+/// The WGSL module `first_sweeps`: which light volume is the first of each volume, and how many of its slices rays look through for themselves.
 ///
 /// Not in a uniform: lavapipe compiles a shader anew for the values of uniforms that it branches on, whichever shadow is meant among them, and
 /// with them for others, which change from frame to frame; and it keeps all that it compiled.
-pub(crate) fn sweeps_module(counts: &[u32]) -> (&'static str, String) {
-    let mut text = String::from("fn first_sweep(volume: u32) -> u32 {\n    switch volume {\n");
-    let mut first = 0;
-    for (volume, count) in counts.iter().enumerate() {
+pub(crate) fn sweeps_module(counts: &[u32], near: &[u32]) -> (&'static str, String) {
+    let mut text = format!("const ANY_NEAR = {};\n", near.iter().any(|slices| *slices > 0));
+    let first = counts.iter().scan(0, |next, count| Some(std::mem::replace(next, *next + count)));
+    for (name, values) in [("first_sweep", first.collect()), ("near_slices", near.to_vec())] {
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "        case {volume}u: {{ return {first}u; }}");
-        first += count;
+        let _ = writeln!(text, "fn {name}(volume: u32) -> u32 {{\n    switch volume {{");
+        for (volume, value) in values.iter().enumerate() {
+            let _ = writeln!(text, "        case {volume}u: {{ return {value}u; }}");
+        }
+        text.push_str("        default: { return 0u; }\n    }\n}\n");
     }
-    text.push_str("        default: { return 0u; }\n    }\n}\n");
     ("first_sweeps", text)
 }
 
