@@ -160,7 +160,7 @@ const EVERYTHING: &str = "
     \"uniform\": (
         Transform: (translation: (0.6, 0.0, 0.9), scale: 0.3), Mesh: Sphere(subdivisions: 1),
         Subsurface: (material: Preset(\"marble\")),
-        ScatteringMaps: (strategy: Uniform(), samples: 4, progressive: false),
+        ScatteringMaps: (strategy: Uniform, samples: 4, progressive: false),
     ),
     \"beam\": ( Transform: (translation: (0.0, 0.0, 1.5)), Mesh: Box(size: (0.2, 0.2, 0.2)) ),
     \"fog\": (

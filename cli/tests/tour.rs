@@ -85,9 +85,9 @@ impl Tourist {
                         _ => {}
                     }
                     self.tyndall(&words);
-                    if let Some(output) = words.iter().position(|word| *word == "-o") {
-                        self.drawn.push(self.folder.join(words[output + 1]));
-                    }
+                    let output = words.iter().position(|word| *word == "-o");
+                    let pictures = output.map(|output| words[output + 1]).filter(|name| name.ends_with(".png"));
+                    self.drawn.extend(pictures.map(|name| self.folder.join(name)));
                 }
                 // Of the checkout.
                 Some("cargo") => {}
@@ -128,9 +128,13 @@ fn the_tour_works_from_an_empty_folder() {
         let folder = path.parent().unwrap();
         let stem = path.file_stem().unwrap().to_string_lossy().into_owned();
         let written = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-        let is_it =
-            |path: &PathBuf| path.file_stem().is_some_and(|found| found.to_string_lossy().starts_with(&stem));
-        for picture in written.filter(is_it) {
+        let is_it = |path: &PathBuf| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            name.starts_with(&stem) && name.ends_with(".png")
+        };
+        let pictures: Vec<PathBuf> = written.filter(is_it).collect();
+        assert!(!pictures.is_empty(), "{} is not there", path.display());
+        for picture in pictures {
             let picture = image::open(&picture).unwrap().into_rgb8();
             let first = picture.get_pixel(0, 0);
             assert!(picture.pixels().any(|pixel| pixel != first), "nothing is in {}", path.display());

@@ -123,13 +123,16 @@ impl Preset {
             absorption,
         };
         let middle = 0.5 * (start + low);
+        // Of masked data the least values too are object.
+        let is_masked = histogram.is_some_and(Histogram::is_masked);
+        let from = |opacity: f32| if is_masked { opacity } else { 0.0 };
         let (points, iso) = match self {
             Self::Ramp => {
                 (vec![ControlPoint(0.0, Vec3::ZERO, 0.0), ControlPoint(1.0, Vec3::ONE, 0.1)], Vec::new())
             }
             Self::Object => (
                 vec![
-                    at(start, (0.35, 0.25, 0.18), 0.0),
+                    at(start, (0.35, 0.25, 0.18), from(0.05)),
                     at(low, (0.80, 0.62, 0.45), 0.05),
                     at(high, (0.95, 0.90, 0.80), 0.3),
                     at(top, (1.0, 1.0, 1.0), 0.6),
@@ -179,7 +182,7 @@ impl Preset {
             ),
             Self::Mr => (
                 vec![
-                    at(start, (0.45, 0.22, 0.15), 0.0),
+                    at(start, (0.45, 0.22, 0.15), from(0.02)),
                     at(middle, (0.65, 0.42, 0.32), 0.02),
                     at(low, (0.80, 0.60, 0.50), 0.08),
                     at(high, (0.92, 0.84, 0.78), 0.35),
@@ -198,7 +201,7 @@ impl Preset {
             ),
             Self::Glow => (
                 vec![
-                    at(start, (0.25, 0.08, 0.60), 0.0),
+                    at(start, (0.25, 0.08, 0.60), from(0.02)),
                     at(middle, (0.45, 0.10, 0.85), 0.02),
                     at(low, (0.85, 0.08, 0.40), 0.08),
                     at(0.5 * (low + high), (1.00, 0.22, 0.05), 0.3),
@@ -209,7 +212,7 @@ impl Preset {
             ),
             Self::Mist => (
                 vec![
-                    at(start, (0.05, 0.25, 0.60), 0.0),
+                    at(start, (0.05, 0.25, 0.60), from(0.04)),
                     at(low, (0.20, 0.55, 0.90), 0.04),
                     at(high, (0.60, 0.88, 1.00), 0.25),
                     at(top, (0.92, 0.99, 1.00), 0.9),
@@ -281,6 +284,22 @@ mod tests {
     fn histogram(samples: Vec<f32>) -> Histogram {
         let size = [samples.len() as u32, 1, 1];
         VolumeData::new(size, Vec3::ONE, Samples::F32(samples)).unwrap().histogram
+    }
+
+    #[test]
+    fn of_masked_data_the_least_values_are_seen_too() {
+        let values = |masked: usize| {
+            let there = (0..1000).map(|index| 5.0 + (index / 10) as f32);
+            there.chain(std::iter::repeat_n(f32::NAN, masked)).collect()
+        };
+        for preset in [Preset::Object, Preset::Mr, Preset::Glow, Preset::Mist] {
+            let least = |masked| {
+                let histogram = histogram(values(masked));
+                preset.applied(&TransferFunction::default(), Some(&histogram), (5.0, 105.0)).points[0].2
+            };
+            assert_eq!(least(900), 0.0, "{preset:?}: a few samples are missing anywhere");
+            assert!(least(1100) >= 0.02, "{preset:?}: {}", least(1100));
+        }
     }
 
     #[test]

@@ -14,6 +14,8 @@ pub struct Histogram {
     /// Where the first bin begins and the last one ends, in values of the data: the volume's `core_range`, or of 8-bit formats all that
     /// they can hold and half a value around it. What lies beyond is in the first and the last bin. Both are equal where all samples are.
     pub range: (f32, f32),
+    /// Samples that are in no bin, as they are not finite: in masked data, what the mask leaves out.
+    pub missing: u64,
     /// Whether a bin is one value.
     one_value_a_bin: bool,
 }
@@ -25,7 +27,7 @@ impl Histogram {
     /// Counts samples; looks at each once.
     pub(super) fn of(samples: &Samples, range: (f32, f32)) -> Self {
         let of_bytes =
-            |bins, least: f32| Self { bins, range: (least - 0.5, least + 255.5), one_value_a_bin: true };
+            |bins, least: f32| Self::from_counts(bins, (least - 0.5, least + 255.5), true);
         match samples {
             Samples::U8(samples) => of_bytes(count(samples, usize::from), 0.0),
             Samples::I8(samples) => {
@@ -57,7 +59,18 @@ impl Histogram {
                 Self::BINS
             }
         };
-        Self { bins: count(samples, bin), range, one_value_a_bin: false }
+        Self::from_counts(count(samples, bin), range, false)
+    }
+
+    /// From how many samples are in each bin, and how many in none.
+    fn from_counts(mut bins: Vec<u64>, range: (f32, f32), one_value_a_bin: bool) -> Self {
+        let missing = bins.split_off(Self::BINS).iter().sum();
+        Self { bins, range, missing, one_value_a_bin }
+    }
+
+    /// Whether most of the samples are missing: then the others are what the data are of, whatever their values.
+    pub fn is_masked(&self) -> bool {
+        self.missing > self.bins.iter().sum()
     }
 
     /// The value at the centre of a bin.
@@ -88,7 +101,7 @@ impl Histogram {
     }
 }
 
-/// Counts by bin; what falls into a bin past the last is left out.
+/// Counts by bin, with one more past the last.
 fn count<T: Copy>(samples: &[T], bin: impl Fn(T) -> usize) -> Vec<u64> {
     // Two tables in turn: samples next to each other are often equal, and one counter would wait for itself.
     let mut tables = [[0_u64; Histogram::BINS + 1]; 2];
@@ -100,7 +113,7 @@ fn count<T: Copy>(samples: &[T], bin: impl Fn(T) -> usize) -> Vec<u64> {
     for sample in pairs.remainder() {
         tables[0][bin(*sample)] += 1;
     }
-    (0..Histogram::BINS).map(|bin| tables[0][bin] + tables[1][bin]).collect()
+    (0..=Histogram::BINS).map(|bin| tables[0][bin] + tables[1][bin]).collect()
 }
 
 #[cfg(test)]
@@ -124,7 +137,8 @@ mod tests {
         let samples: Vec<f32> =
             (0..=1000).map(|i| i as f32 * 0.5).chain([f32::NAN, f32::INFINITY, 1e38]).collect();
         let histogram = Histogram::of(&Samples::F32(samples), (0.0, 500.0));
-        assert_eq!(histogram.bins.iter().sum::<u64>(), 1001);
+        assert_eq!((histogram.bins.iter().sum::<u64>(), histogram.missing), (1001, 3));
+        assert!(!histogram.is_masked());
         assert!(histogram.bins.iter().all(|&bin| (3..=5).contains(&bin)));
         assert_eq!(histogram.percentile(0.0), Some(0.0));
         assert_eq!(histogram.percentile(1.0), Some(500.0));
