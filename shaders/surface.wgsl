@@ -121,12 +121,18 @@ fn shade_coloured(in: ColouredVaryings) -> @location(0) vec4f {
     return vec4f(mesh.ambient + reflected(at, mesh.diffuse * albedo), at.distance);
 }
 
-// A place in the picture moved onto the grid of 1/256 of a pixel that rasterisers count in. Some decide by the place on the grid which pixels a triangle
-// covers, and interpolate in it as it was: across triangles that are narrower than that, what is found lies far beyond what their corners have.
-fn on_grid(clip: vec4f) -> vec4f {
+// A corner moved onto the grid of 1/256 of a pixel that rasterisers count in. Some decide by the place on the grid which pixels a triangle covers, and
+// interpolate in it as it was: across triangles that are narrower than that, what is found lies far beyond what their corners have. The place in the eye's
+// space moves along, so that what is interpolated stays on the ray of its pixel.
+fn on_grid(corner: Varyings) -> Varyings {
+    let clip = corner.position_in_clip;
+    if clip.w <= 0.0 {
+        return corner;
+    }
     let scale = 128.0 * frame.picture;
-    let place = round(clip.xy / clip.w * scale) / scale;
-    return select(clip, vec4f(place * clip.w, clip.zw), clip.w > 0.0);
+    let place = round(clip.xy / clip.w * scale) / scale * clip.w;
+    let moved = (place - clip.xy) * frame.half_extent;
+    return Varyings(vec4f(place, clip.zw), corner.position_in_eye + vec3f(moved, 0.0), corner.normal_in_eye);
 }
 
 struct TranslucentVaryings {
@@ -143,8 +149,8 @@ fn transform_translucent(
     @location(2) radiosity: vec4f,
     place: MeshPlace,
 ) -> TranslucentVaryings {
-    let out = transformed(position, normal, place);
-    return TranslucentVaryings(on_grid(out.position_in_clip), out.position_in_eye, out.normal_in_eye, radiosity.xyz);
+    let out = on_grid(transformed(position, normal, place));
+    return TranslucentVaryings(out.position_in_clip, out.position_in_eye, out.normal_in_eye, radiosity.xyz);
 }
 
 struct ColouredTranslucentVaryings {
@@ -165,9 +171,9 @@ fn transform_coloured_translucent(
     @location(4) at_picture: vec2f,
     place: MeshPlace,
 ) -> ColouredTranslucentVaryings {
-    let out = transformed(position, normal, place);
+    let out = on_grid(transformed(position, normal, place));
     return ColouredTranslucentVaryings(
-        on_grid(out.position_in_clip), out.position_in_eye, out.normal_in_eye, radiosity.xyz, colour.rgb, at_picture);
+        out.position_in_clip, out.position_in_eye, out.normal_in_eye, radiosity.xyz, colour.rgb, at_picture);
 }
 
 // What a translucent mesh sends to the eye.
