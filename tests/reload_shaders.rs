@@ -150,16 +150,16 @@ fn what_a_shader_made_is_made_again_and_nothing_before_it() {
 }
 
 /// Everything that has a shader: bodies of both strategies, a medium that scatters with a beam in its way, one that is classified
-/// beforehand, and a light for which there is no room.
+/// beforehand, one whose rays are cast in parts, and a light for which there is no room.
 const EVERYTHING: &str = "
     \"moon\": ( DirectionalLight: (direction: (-1.0, -1.0, -1.0)) ),
     \"adaptive\": (
         Transform: (translation: (-0.6, 0.0, 0.9), scale: 0.3), Mesh: Sphere(subdivisions: 1),
-        Subsurface: (material: Preset(\"marble\")), ScatteringMaps: (samples: 4, progressive: false),
+        Subsurface: (material: Custom(sigma_s: (50.0, 60.0, 70.0), sigma_a: (0.1, 0.1, 0.1))), ScatteringMaps: (samples: 4, progressive: false),
     ),
     \"uniform\": (
         Transform: (translation: (0.6, 0.0, 0.9), scale: 0.3), Mesh: Sphere(subdivisions: 1),
-        Subsurface: (material: Preset(\"marble\")),
+        Subsurface: (material: Custom(sigma_s: (50.0, 60.0, 70.0), sigma_a: (0.1, 0.1, 0.1))),
         ScatteringMaps: (strategy: Uniform, samples: 4, progressive: false),
     ),
     \"beam\": ( Transform: (translation: (0.0, 0.0, 1.5)), Mesh: Box(size: (0.2, 0.2, 0.2)) ),
@@ -174,6 +174,11 @@ const EVERYTHING: &str = "
             domain: (0.0, 1.0), points: [(0.0, (0.9, 0.9, 0.9), 0.5), (1.0, (0.9, 0.9, 0.9), 0.5)],
             classification: Pre,
         ),
+    ),
+    \"fine\": (
+        Volume: Raw(path: \"fog.raw\", size: (1, 1, 512), spacing: (0.1, 0.1, 0.001)),
+        TransferFunction: (domain: (0.0, 1.0), points: [(0.0, (0.9, 0.9, 0.9), 0.5), (1.0, (0.9, 0.9, 0.9), 0.5)]),
+        RayCast: (step: 0.01),
     ),";
 
 #[needs(gpu)]

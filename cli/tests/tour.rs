@@ -86,7 +86,8 @@ impl Tourist {
                     }
                     self.tyndall(&words);
                     let output = words.iter().position(|word| *word == "-o");
-                    let pictures = output.map(|output| words[output + 1]).filter(|name| name.ends_with(".png"));
+                    let pictures =
+                        output.map(|output| words[output + 1]).filter(|name| name.ends_with(".png"));
                     self.drawn.extend(pictures.map(|name| self.folder.join(name)));
                 }
                 // Of the checkout.

@@ -51,7 +51,7 @@ impl Subject {
 
     pub fn bunny() -> Self {
         let path = Path::new(&std::env::var("TYNDALL_DATA").unwrap()).join("meshes/stanford-bunny.obj");
-        Self::new(&format!("File({path:?})"), MARBLE, 250.0)
+        Self::new(&format!("File(path: {path:?}, normals: Smooth(180.0))"), MARBLE, 250.0)
     }
 
     pub fn world(&mut self) -> &mut World {

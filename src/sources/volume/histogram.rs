@@ -26,8 +26,7 @@ impl Histogram {
 
     /// Counts samples; looks at each once.
     pub(super) fn of(samples: &Samples, range: (f32, f32)) -> Self {
-        let of_bytes =
-            |bins, least: f32| Self::from_counts(bins, (least - 0.5, least + 255.5), true);
+        let of_bytes = |bins, least: f32| Self::from_counts(bins, (least - 0.5, least + 255.5), true);
         match samples {
             Samples::U8(samples) => of_bytes(count(samples, usize::from), 0.0),
             Samples::I8(samples) => {
