@@ -241,6 +241,8 @@ struct Sample {
     // Where it is: as a share of the volume, and along the ray from where it enters.
     place: vec3f,
     along: f32,
+    // Optical depth of a step of the ray there.
+    each: f32,
     // 1 - albedo f.
     thinned: f32,
 }
@@ -249,11 +251,17 @@ struct Sample {
 // then the ray looks through the slices next to the sample for itself, and finds in the light volume what had come through until there.
 fn depth_to_light(way: Way, volume: VolumeInstance, light: u32, on_way: LightWay, sample: Sample) -> f32 {
     let index = first_sweep(way.index) + light;
+    let interpolated = light_depth_on(index, on_way, sample.along);
     let slices = near_slices(way.index);
     if !ANY_NEAR || slices == 0u {
-        return light_depth_on(index, on_way, sample.along);
+        return interpolated;
     }
     let step = light_step(index);
+    // Of so little that it does not matter what light it gets, up to twice that.
+    let needed = clamp(sample.each * step.w / (volume.reach * volume.step * LEAST_LOOKED) - 1.0, 0.0, 1.0);
+    if needed == 0.0 {
+        return interpolated;
+    }
     let samples = slices * NEAR_SAMPLES;
     // No further than to where the light comes in.
     let near = min(f32(slices), reach_on(on_way, sample.along));
@@ -263,7 +271,7 @@ fn depth_to_light(way: Way, volume: VolumeInstance, light: u32, on_way: LightWay
         let place = sample.place - step.xyz * (part * (f32(i) + 0.5));
         extinction += found_at(way.index, volume, way.lookup, way.classification, place).extinction;
     }
-    return light_depth(index, sample.place - step.xyz * near) + part * step.w * extinction;
+    return mix(interpolated, light_depth(index, sample.place - step.xyz * near) + part * step.w * extinction, needed);
 }
 
 // Light that is scattered towards the eye: the source function where the albedo is `colour`. Where light is scattered often, what a forward
@@ -366,6 +374,8 @@ fn tinted(colour: vec3f, front: Voxel, back: Voxel) -> vec3f {
 struct Together {
     colour: vec3f,
     along: f32,
+    // Optical depth of one of them, and of all.
+    each: f32,
     depth: f32,
     alpha: f32,
 }
@@ -376,6 +386,7 @@ fn joined(all: Together, colour: vec3f, depth: f32, along: f32) -> Together {
     return Together(
         all.colour + shown * colour,
         all.along + shown * along,
+        all.each + shown * depth,
         all.depth + depth,
         all.alpha + shown,
     );
@@ -517,7 +528,7 @@ fn show(
     before: Gathered,
 ) -> Gathered {
     let part = 1.0 / max(together.alpha, 1e-30);
-    var sample = Sample(together.colour * part, vec3f(0.0), together.along * part, 1.0);
+    var sample = Sample(together.colour * part, vec3f(0.0), together.along * part, together.each * part, 1.0);
     sample.thinned = thinning(volume, sample.colour);
     var colour = sample.colour;
     if ANY_LIT {

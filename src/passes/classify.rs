@@ -60,6 +60,13 @@ impl Classified {
         f64::from(self.table.entries.iter().map(|entry| entry.w).fold(0.0, f32::max))
     }
 
+    /// Extinction at a data value, per scene unit.
+    pub fn extinction_of(&self, value: f32) -> f64 {
+        let entries = &self.table.entries;
+        let at = self.table.position(self.domain, value).round().clamp(0.0, (entries.len() - 1) as f64);
+        f64::from(entries[at as usize].w)
+    }
+
     /// With the versions of what stood here before, as far as it is the same; `next` where it is not.
     fn versioned(self, former: Option<&Self>, next: u64) -> Self {
         let next = Versions { extinction: next, table: next };

@@ -57,8 +57,12 @@ const COARSER: f64 = 4.0;
 
 /// Cells along an axis: at least so many, or the voxels there are, and at most so many.
 const FEWEST: u32 = 16;
-const FEWEST_DENSE: u32 = 32;
 const MOST: u32 = 128;
+
+/// In a dense medium, mean free paths that a cell is long at most; fluence that is interpolated between longer ones shows as spots. As far as so many cells
+/// along each axis go.
+const FREE_PATHS: f64 = 1.6;
+const MOST_DENSE: u32 = 64;
 
 type Volumes<'w, 's> = Query<
     'w,
@@ -125,10 +129,11 @@ pub(crate) fn run(
 /// The cells of scattered light, for those of direct light at a resolution of 1.
 fn coarser(fine: Cells, voxels: [u32; 3], resolution: f32) -> UVec3 {
     let along = |axis: usize| {
-        let wanted = (f64::from(voxels[axis]) * f64::from(resolution) / COARSER).ceil() as u32;
-        let fewest =
-            if fine.is_dense { fine.count[axis].min(FEWEST_DENSE) } else { voxels[axis].min(FEWEST) };
-        wanted.clamp(fewest, MOST)
+        let at_resolution = |cells: f64| (cells * f64::from(resolution)).ceil() as u32;
+        let least = voxels[axis].min(FEWEST);
+        let in_free_paths = at_resolution(fine.free_paths[axis] / FREE_PATHS);
+        let fewest = if fine.is_dense { in_free_paths.clamp(least, MOST_DENSE) } else { least };
+        at_resolution(f64::from(voxels[axis]) / COARSER).clamp(fewest, MOST)
     };
     UVec3::new(along(0), along(1), along(2))
 }

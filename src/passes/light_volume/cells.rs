@@ -3,10 +3,17 @@
 use crate::gpu::Gpu;
 use crate::loading::LoadedVolume;
 use crate::passes::classify::Classified;
+use crate::sources::Histogram;
 use glam::{DAffine3, DVec3, UVec3};
 
 /// Optical depth of a cell up to which what is interpolated in it is the light there.
 const THIN: f64 = 0.5;
+
+/// Optical depth of a cell in which there is anything to speak of.
+const NOTICEABLE: f64 = 0.01;
+
+/// The share of what there is in a volume that is dense from which on the volume is: rays that look for light themselves take up to twice as long.
+const DENSE_SHARE: f64 = 0.25;
 
 /// Cells that may be made of a volume to have none longer than they are wide: 64 MiB a light.
 const MOST_CELLS: f64 = (1 << 24) as f64;
@@ -17,8 +24,14 @@ const MOST_SHORTER: f64 = 8.0;
 /// Slices in front of a place that rays look through for themselves, in a dense medium.
 const NEAR: (f64, f64) = (2.0, 4.0);
 
+/// Optical depth of a slice, as dense as it is at a sample, from which on they do so for it; from twice that on altogether.
+pub(crate) const LEAST_LOOKED: f64 = 0.1;
+
+/// Samples in each of them.
+pub(crate) const NEAR_SAMPLES: u64 = 4;
+
 /// How the light in a volume is kept.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Cells {
     /// Cells along each axis.
     pub count: UVec3,
@@ -26,6 +39,8 @@ pub(crate) struct Cells {
     pub near: u32,
     /// Whether cells take much of the light that comes into them.
     pub is_dense: bool,
+    /// How many mean free paths the volume is long along each axis, where it is densest.
+    pub free_paths: DVec3,
 }
 
 impl Cells {
@@ -45,7 +60,8 @@ impl Cells {
         let axes = scene_from_texture.matrix3;
         let extent = DVec3::new(axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length());
         let edges = extent / wanted;
-        let is_dense = edges.max_element() * classified.greatest_extinction() > THIN;
+        let free_paths = extent * classified.greatest_extinction();
+        let is_dense = dense_share(&loaded.data.histogram, classified, edges.max_element()) > DENSE_SHARE;
         let wanted = if is_dense { evened_out(wanted, edges) } else { wanted };
         let edges = extent / wanted;
         let near = (edges.max_element() / edges.min_element()).ceil().clamp(NEAR.0, NEAR.1) as u32;
@@ -57,8 +73,20 @@ impl Cells {
             count: (wanted - 1e-3).ceil().clamp(DVec3::ONE, DVec3::splat(limit)).as_uvec3(),
             near: if is_dense && !has_layers { near } else { 0 },
             is_dense,
+            free_paths,
         }
     }
+}
+
+/// Of the voxels in which there is anything, the share of those that take more from light than `THIN` over the edge of a cell.
+fn dense_share(histogram: &Histogram, classified: &Classified, edge: f64) -> f64 {
+    let (mut all, mut dense) = (0, 0);
+    for (bin, &voxels) in histogram.bins.iter().enumerate().filter(|(_, voxels)| **voxels > 0) {
+        let depth = edge * classified.extinction_of(histogram.centre(bin));
+        all += if depth > NOTICEABLE { voxels } else { 0 };
+        dense += if depth > THIN { voxels } else { 0 };
+    }
+    dense as f64 / all.max(1) as f64
 }
 
 /// So many cells with these edges, and more along the axes where they are long.

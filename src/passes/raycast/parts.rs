@@ -3,6 +3,7 @@
 use super::pipeline::Variant;
 use crate::gpu::{Draw, Filtering, Gpu, GpuError, ends, storage, uniform_buffer};
 use crate::mirrors::mirror;
+use crate::passes::light_volume::cells::NEAR_SAMPLES;
 use crate::passes::voxels::Reading;
 use crate::view::Pixels;
 use glam::{DMat3, DVec3, UVec2};
@@ -42,9 +43,6 @@ const KEPT_BYTES: u64 = 32 << 20;
 
 /// Draws that are handed in before the first of them is waited for.
 const AHEAD: u64 = 64;
-
-/// Samples in each slice that rays look through on the way to a light.
-const NEAR_SAMPLES: u64 = 4;
 
 /// What one volume takes of a ray.
 #[derive(Clone, Copy, Debug)]
@@ -146,7 +144,7 @@ pub fn module(share: Option<Share>, binding: usize) -> (&'static str, String) {
     let text = format!(
         "const IN_PARTS = {};\nconst PART_BINDING = {binding};\n// Segments between two looks at the bricks: lanes that march together \
          stay together.\nconst RUN = {run}.0;\nconst MOST_WORK = {most_work}u;\nconst WORK_OF_SEGMENT = {of_segment}u;\n\
-         const WORK_OF_RUN = {OF_RUN}u;\nconst WORK_OF_LEAP = {of_leap}u;\nconst WORK_OF_TURN = {of_turn}u;\nconst NEAR_SAMPLES = {NEAR_SAMPLES}u;\n",
+         const WORK_OF_RUN = {OF_RUN}u;\nconst WORK_OF_LEAP = {of_leap}u;\nconst WORK_OF_TURN = {of_turn}u;\n",
         share.is_some()
     );
     ("parts", text)

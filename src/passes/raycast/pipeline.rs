@@ -4,6 +4,7 @@ use super::FORMAT;
 use super::parts::{self, Share};
 use crate::gpu::{Draw, DrawDescriptor, Filtering, Gpu, GpuError, binding};
 use crate::passes::classification::Manner;
+use crate::passes::light_volume::cells::{LEAST_LOOKED, NEAR_SAMPLES};
 use crate::passes::light_volume::lookup;
 use crate::passes::lighting::Kinds;
 use crate::passes::voxels::{self, Reading};
@@ -106,7 +107,10 @@ pub fn make(gpu: &Gpu, variant: &Variant) -> Result<Draw, GpuError> {
 /// Not in a uniform: lavapipe compiles a shader anew for the values of uniforms that it branches on, whichever shadow is meant among them, and
 /// with them for others, which change from frame to frame; and it keeps all that it compiled.
 pub(crate) fn sweeps_module(counts: &[u32], near: &[u32]) -> (&'static str, String) {
-    let mut text = format!("const ANY_NEAR = {};\n", near.iter().any(|slices| *slices > 0));
+    let mut text = format!(
+        "const ANY_NEAR = {};\nconst NEAR_SAMPLES = {NEAR_SAMPLES}u;\nconst LEAST_LOOKED = {LEAST_LOOKED:?};\n",
+        near.iter().any(|slices| *slices > 0)
+    );
     let first = counts.iter().scan(0, |next, count| Some(std::mem::replace(next, *next + count)));
     for (name, values) in [("first_sweep", first.collect()), ("near_slices", near.to_vec())] {
         // Writing to a String cannot fail.

@@ -57,17 +57,17 @@ pub(super) fn angle_weighted(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<
         let Some(normal) = facing(corners[0], corners[1], corners[2]) else {
             continue;
         };
-        for corner in 0..3 {
-            let angle = angle_at(corners[corner], corners[(corner + 1) % 3], corners[(corner + 2) % 3]);
-            sums[triangle[corner] as usize].add(normal, angle);
+        for (vertex, angle) in triangle.iter().zip(angles(corners)) {
+            sums[*vertex as usize].add(normal, angle);
         }
     }
     sums.iter().map(Sum::normal).collect()
 }
 
-/// The angle at `a` between the edges to `b` and `c`, in radians.
-pub(super) fn angle_at(a: Vec3, b: Vec3, c: Vec3) -> f64 {
-    let [a, b, c] = [a, b, c].map(|position| position.as_dvec3());
-    let (u, v) = (b - a, c - a);
-    u.cross(v).length().atan2(u.dot(v))
+/// The angles at the corners of a triangle, in radians.
+pub(super) fn angles(corners: [Vec3; 3]) -> [f64; 3] {
+    let [a, b, c] = corners.map(|position| position.as_dvec3());
+    let (ab, bc, ca) = (b - a, c - b, a - c);
+    let twice_the_area = ab.cross(ca).length();
+    [-ab.dot(ca), -bc.dot(ab), -ca.dot(bc)].map(|cosine| twice_the_area.atan2(cosine))
 }
