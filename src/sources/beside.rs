@@ -10,6 +10,9 @@ use super::trail;
 /// Entries of a folder that are looked at for a name in other letters.
 const MAX_ENTRIES: usize = 1 << 16;
 
+/// The longest name that is told of as it is, in bytes; no file has a longer one, but for its folders.
+const LONGEST_TOLD: usize = 255;
+
 /// The files that a header names. Where there is no such file, a `\` counts as a `/`, and of a path of another machine only its
 /// last part, beside the header; on Windows, names in other letters are the same. A note tells of it.
 pub(super) fn beside(header: &Path, names: &[String], notes: &mut Vec<String>) -> Vec<PathBuf> {
@@ -26,7 +29,10 @@ pub(super) fn beside(header: &Path, names: &[String], notes: &mut Vec<String>) -
             replaced.push((name, other.to_owned()));
         }
         // One that is missing is reported where it would have been found.
-        paths.push(other.unwrap_or(named));
+        paths.push(match name.len() > LONGEST_TOLD && !other.as_deref().is_some_and(is_file) {
+            true => folder.join(name.chars().take(80).chain(['…']).collect::<String>()),
+            false => other.unwrap_or(named),
+        });
     }
     if let Some((name, path)) = replaced.first() {
         let read = path.strip_prefix(folder).unwrap_or(path);
@@ -115,6 +121,8 @@ mod tests {
         assert_eq!(found("X:\\none.raw"), ("none.raw".to_owned(), vec![]));
         assert_eq!(found("none\\none.raw"), ("none/none.raw".to_owned(), vec![]));
         assert_eq!(found("none.raw"), ("none.raw".to_owned(), vec![]));
+        let (long, _) = found(&"n".repeat(5000));
+        assert_eq!(long, format!("{}…", "n".repeat(80)));
         let mut notes = Vec::new();
         beside(&at("a.mhd"), &["x:\\vol.raw".to_owned(), "x:\\mixed.raw".to_owned()], &mut notes);
         assert!(notes.len() == 1 && notes[0].ends_with("(and 1 more)"), "{notes:?}");
