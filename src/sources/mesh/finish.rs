@@ -80,6 +80,9 @@ impl<'a> Finisher<'a> {
                 missing += 1;
             } else if !corners.iter().all(|corner| corner.is_finite()) {
                 not_finite += 1;
+            } else if count == 3 {
+                self.triangles.push([0, 1, 2].map(|corner| of_face.start + corner));
+                self.faces.push(face as u32);
             } else {
                 cut.clear();
                 crossing += u64::from(!cutter.cut(&corners, &mut cut));

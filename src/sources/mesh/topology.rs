@@ -26,30 +26,28 @@ impl Edges {
         for end in &mut ends {
             total += std::mem::replace(end, total);
         }
-        let mut sides = vec![0; total as usize];
+        // The greater end and the side in one number.
+        let mut keyed = vec![0_u64; total as usize];
         for side in all {
             let (a, b) = ends_of(triangles, side);
             if a != b {
                 let end = &mut ends[a.min(b) as usize];
-                sides[*end as usize] = side;
+                keyed[*end as usize] = u64::from(a.max(b)) << 32 | u64::from(side);
                 *end += 1;
             }
         }
-        let greater = |side: &u32| {
-            let (a, b) = ends_of(triangles, *side);
-            a.max(b)
-        };
         let mut starts = Vec::with_capacity(triangles.len() * 3 / 2 + 2);
         let mut start = 0;
         for &end in &ends[..vertices] {
-            let shared = &mut sides[start as usize..end as usize];
-            shared.sort_unstable_by_key(|side| (greater(side), *side));
-            for edge in shared.chunk_by(|a, b| greater(a) == greater(b)) {
+            let shared = &mut keyed[start as usize..end as usize];
+            shared.sort_unstable();
+            for edge in shared.chunk_by(|a, b| a >> 32 == b >> 32) {
                 starts.push(start);
                 start += edge.len() as u32;
             }
         }
         starts.push(start);
+        let sides = keyed.into_iter().map(|key| key as u32).collect();
         Self { sides, starts }
     }
 
