@@ -5,7 +5,9 @@ use super::draft::Draft;
 use super::options::{CREASE_DEGREES, Normals};
 use super::orient::{self, Facing};
 use super::topology::Edges;
-use super::{MeshData, join, normals, origin, triangulate::Cutter, weld::weld, words::counted};
+use super::{
+    MeshData, MeshMaterial, MeshPart, join, normals, origin, triangulate::Cutter, weld::weld, words::counted,
+};
 use crate::sources::SourceError;
 use glam::{DVec3, Vec3};
 use std::collections::HashSet;
@@ -44,10 +46,26 @@ impl Draft {
         let mut mesh = Finisher::new(&self, origin).finish(rule);
         let mut notes = std::mem::take(&mut self.notes);
         notes.append(&mut mesh.notes);
+        notes.extend(note_on_opacity(&self.materials, &mesh.parts));
         mesh.notes = notes;
         mesh.materials = if mesh.parts.is_empty() { Vec::new() } else { self.materials };
         Ok(mesh)
     }
+}
+
+/// Meshes are drawn as opaque, whatever their files say.
+fn note_on_opacity(materials: &[MeshMaterial], parts: &[MeshPart]) -> Option<String> {
+    let used = parts.iter().filter_map(|part| materials.get(part.material as usize));
+    let mut clear = used.filter(|material| material.opacity < 1.0);
+    let first = clear.next()?;
+    let others = match clear.count() {
+        0 => String::new(),
+        more => format!(" and those of {}", counted(more as u64, "other material")),
+    };
+    Some(format!(
+        "the opacity of material `{}`, {},{others} is ignored: meshes hide what is behind them",
+        first.name, first.opacity
+    ))
 }
 
 impl<'a> Finisher<'a> {

@@ -352,3 +352,21 @@ fn broken_files_never_panic() {
         "{loaded} of 2000 loaded: the mutations are too strong or too weak"
     );
 }
+
+#[test]
+fn opacity_that_is_not_drawn_is_told_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.obj");
+    let library = "newmtl glass\nKd 1 0 0\nd 0.3\nnewmtl stone\nKd 0 1 0\nnewmtl unused\nd 0\n";
+    fs::write(folder.path().join("a.mtl"), library).unwrap();
+    for (name, notes) in [("stone", 0), ("glass", 1)] {
+        fs::write(&path, format!("mtllib a.mtl\nusemtl {name}\n{CUBE}")).unwrap();
+        let mesh = read_obj(&path, Normals::default()).unwrap();
+        assert_eq!(mesh.notes.len(), notes, "{:?}", mesh.notes);
+        assert!(
+            mesh.notes
+                .iter()
+                .all(|note| note.starts_with("the opacity of material `glass`, 0.3, is ignored"))
+        );
+    }
+}
