@@ -221,7 +221,8 @@ fn materials_become_what_phong_needs() {
     assert!(paint.specular.abs_diff_eq(Vec3::new(0.27, 0.145, 0.52), 1e-6), "{}", paint.specular);
     assert!((paint.shininess - 30.0).abs() < 1e-4 && paint.subsurface.is_none(), "{}", paint.shininess);
     assert_eq!((mesh.parts.len(), mesh.parts[0].triangles.clone()), (1, 0..1));
-    assert_eq!(mesh.notes, ["not used: light of its own"]);
+    let opacity = "the opacity of material `paint`, 0.5, is ignored: meshes hide what is behind them";
+    assert_eq!(mesh.notes, ["not used: light of its own", opacity]);
     // Linear, as glTF has them.
     let colour = |at: Vec3| mesh.colours[mesh.positions.iter().position(|position| *position == at).unwrap()];
     assert_eq!(colour(Vec3::X), [0.0, 128.0 / 255.0, 0.0, 1.0]);
