@@ -94,8 +94,10 @@ impl LoadedVolume {
         match function.domain {
             Auto::Value(domain) => (domain.x, domain.y),
             Auto::Auto if automatic.0 < automatic.1 => automatic,
-            // Constant data has no range; any domain that holds the value does.
-            Auto::Auto => (automatic.0, automatic.0 + automatic.0.abs().max(1.0)),
+            // Constant data has no range. What is not 0 is there: it is as far from it as values get.
+            Auto::Auto if automatic.0 > f32::MIN_POSITIVE => (0.0, automatic.0),
+            Auto::Auto if automatic.0 < -f32::MIN_POSITIVE => (2.0 * automatic.0, automatic.0),
+            Auto::Auto => (0.0, 1.0),
         }
     }
 

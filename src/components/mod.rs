@@ -43,7 +43,7 @@ pub use subsurface::{DipoleModel, Material, Specular, Subsurface};
 pub use transfer_function::{Classification, ControlPoint, IsoValue, LabelColour, Preset, TransferFunction};
 pub(crate) use transform::place;
 pub use transform::{DataFrame, Motion, Placement, Scale, Transform};
-pub use view_camera::{Framing, Projection, ViewCamera};
+pub use view_camera::{Flat, Framing, Projection, ViewCamera};
 pub use volume::{Endian, Interpolation, Place, SampleFormat, Volume};
 pub use volume_lighting::VolumeLighting;
 

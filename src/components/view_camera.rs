@@ -14,7 +14,7 @@ use glam::Vec3;
 /// | `eye` | point | scene units | not `target` | (0, 0, 4) |
 /// | `target` | point that appears in the middle | scene units | – | (0, 0, 0) |
 /// | `up` | vector that points up in the picture | – | not along the view | (0, 1, 0) |
-/// | `frame` | `None`, or `(from, fill)`: the camera stands in the direction `from` of all that can be seen, so far away that it fills this share of the picture; `eye` and `target` play no part | – | `from` not 0 and not along `up`; `fill` 0.01 to 1 | `None` |
+/// | `frame` | `None`, or `(from, fill, flat)`: the camera stands in the direction `from` of all that can be seen, so far away that it fills this share of the picture; `eye` and `target` play no part. What is ten times as wide as thick, and would be seen from its edge, is seen so with `flat: Edge`, or from above, its front below (`FrontBelow`) or on top (`FrontOnTop`, as slices of patients are shown), or from the left if it stands upright | – | `from` not 0 and not along `up`; `fill` 0.01 to 1 | `None` |
 /// | `projection` | `Perspective(vertical_fov)` or `Orthographic(height)` | degrees; scene units | 0.01 to 179; above 0 | `Perspective(vertical_fov: 45.0)` |
 /// | `exposure` | number | EV: each step doubles the brightness | -100 to 100 | 0 |
 /// | `gamma` | `Auto` for the curve of sRGB, or an exponent | – | 0.1 to 10 | `Auto` |
@@ -108,11 +108,26 @@ pub struct Framing {
     /// The share of the picture's height or width, whichever is less, that is filled.
     #[reflect(@Range::new(0.01, 1.0))]
     pub fill: f32,
+    /// How what is ten times as wide as thick is seen that would be seen from its edge.
+    pub flat: Flat,
+}
+
+/// How flat things are seen.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Default, PartialEq)]
+pub enum Flat {
+    /// As all other things: from the edge.
+    #[default]
+    Edge,
+    /// From above with the front below, as what lies on a table; from the left if it stands upright.
+    FrontBelow,
+    /// From above with the front on top, as slices of patients are shown; from the left if it stands upright.
+    FrontOnTop,
 }
 
 impl Default for Framing {
     fn default() -> Self {
-        Self { from: Vec3::Z, fill: 0.9 }
+        Self { from: Vec3::Z, fill: 0.9, flat: Flat::Edge }
     }
 }
 

@@ -224,6 +224,8 @@ struct Basis {
     right: Vec3,
     up: Vec3,
     back: Vec3,
+    /// How flat things are seen, unless the front was asked for.
+    flat: &'static str,
 }
 
 impl Basis {
@@ -237,7 +239,12 @@ impl Basis {
             None => up.any_orthonormal_vector(),
         };
         let right = up.cross(front).try_normalize()?;
-        Some(Self { right, up, back: right.cross(up) })
+        let flat = match orientation.front {
+            Some(_) => "",
+            None if is_patient => ", flat: FrontOnTop",
+            None => ", flat: FrontBelow",
+        };
+        Some(Self { right, up, back: right.cross(up), flat })
     }
 
     /// The direction that light travels which comes from `right`, `up` and `back` of the camera.
@@ -247,10 +254,11 @@ impl Basis {
 
     fn camera_and_lights(&self) -> String {
         let (from, up) = (vector(self.back), vector(self.up));
+        let flat = self.flat;
         let key = vector(self.light(-0.5, 0.6, 1.0));
         let fill = vector(self.light(0.8, -0.1, 0.7));
         format!(
-            "        \"camera\": (\n            ViewCamera: (up: {up}, frame: (from: {from}), projection: Perspective(vertical_fov: 25.0)),\n        ),\n        \
+            "        \"camera\": (\n            ViewCamera: (up: {up}, frame: (from: {from}{flat}), projection: Perspective(vertical_fov: 25.0)),\n        ),\n        \
              \"key light\": (\n            DirectionalLight: (direction: {key}, irradiance: (2.6, 2.6, 2.6)),\n        ),\n        \
              \"fill light\": (\n            DirectionalLight: (direction: {fill}, irradiance: (0.6, 0.62, 0.65)),\n        ),\n"
         )

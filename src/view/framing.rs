@@ -1,7 +1,7 @@
 //! Where a camera stands for all of a scene to fill the picture.
 
 use super::Viewpoint;
-use crate::components::{Framing, Projection, ViewCamera};
+use crate::components::{Flat, Framing, Projection, ViewCamera};
 use glam::{DVec2, DVec3, UVec2};
 
 /// The viewpoint of a camera with a [`Framing`], for points that are all to be in the picture; none where there are none.
@@ -10,9 +10,15 @@ use glam::{DVec2, DVec3, UVec2};
 /// is `fill` times the tangent of half the angle of view. Each point thus bounds how near the camera may come on either side; the least
 /// distance that all allow, above, below and at the sides, is what is wanted.
 pub fn framed(camera: &ViewCamera, framing: &Framing, points: &[DVec3], size: UVec2) -> Option<Viewpoint> {
-    let back = framing.from.as_dvec3().normalize();
+    let mut back = framing.from.as_dvec3().normalize();
     let right = camera.up.as_dvec3().cross(back).normalize();
-    let up = back.cross(right);
+    let mut up = back.cross(right);
+    let mut upwards = camera.up.as_dvec3();
+    if let Some(face) = across_flat(points, [right, up, back], framing.flat) {
+        (back, upwards) = face;
+        up = upwards;
+    }
+    let right = up.cross(back);
     // About a point in the midst of it, so that digits are kept far away from the origin.
     let centre = (points.iter().fold(DVec3::INFINITY, |low, point| low.min(*point))
         + points.iter().fold(DVec3::NEG_INFINITY, |high, point| high.max(*point)))
@@ -55,7 +61,32 @@ pub fn framed(camera: &ViewCamera, framing: &Framing, points: &[DVec3], size: UV
     };
     // What is looked at lies in the middle of the depth, so that a turn is a turn about it.
     let target = centre + right * middle.x + up * middle.y;
-    Some(Viewpoint { eye: target + back * distance, target, up: camera.up.as_dvec3(), projection })
+    Some(Viewpoint { eye: target + back * distance, target, up: upwards, projection })
+}
+
+/// How many times as wide as thick what is flat is.
+const FLAT: f64 = 10.0;
+
+/// From where to look at flat things that would be seen from their edges, and what is up then. Lights of scenes that are made for files come from the
+/// left above.
+fn across_flat(points: &[DVec3], [right, up, back]: [DVec3; 3], flat: Flat) -> Option<(DVec3, DVec3)> {
+    let on_top = match flat {
+        Flat::Edge => return None,
+        Flat::FrontBelow => -back,
+        Flat::FrontOnTop => back,
+    };
+    let extent = |axis: DVec3| {
+        let along = points.iter().map(|point| (*point - points[0]).dot(axis));
+        along.clone().fold(0.0, f64::max) - along.fold(0.0, f64::min)
+    };
+    let [width, height, depth] = [right, up, back].map(extent);
+    if height * FLAT < width.min(depth) {
+        Some((up, on_top))
+    } else if width * FLAT < height.min(depth) {
+        Some((-right, up))
+    } else {
+        None
+    }
 }
 
 #[cfg(test)]
@@ -94,7 +125,7 @@ mod tests {
                 for (from, up) in
                     [(Vec3::Z, Vec3::Y), (Vec3::new(1.0, 0.4, -2.0), Vec3::Y), (Vec3::Y, Vec3::Z)]
                 {
-                    let framing = Framing { from, fill: 0.8 };
+                    let framing = Framing { from, fill: 0.8, flat: Flat::Edge };
                     let camera = ViewCamera { up, projection, ..ViewCamera::default() };
                     let size = UVec2::new(320, 180);
                     let viewpoint = framed(&camera, &framing, &points, size).unwrap();
@@ -106,5 +137,29 @@ mod tests {
         }
         assert!(framed(&ViewCamera::default(), &Framing::default(), &[], UVec2::ONE).is_none());
         assert!(framed(&ViewCamera::default(), &Framing::default(), &[DVec3::ONE], UVec2::ONE).is_some());
+    }
+
+    #[test]
+    fn flat_things_are_seen_from_their_flat_side() {
+        let camera = ViewCamera::default();
+        let from = |extent: DVec3, flat: Flat| {
+            let framing = Framing { flat, ..Framing::default() };
+            let corners = crate::loading::corners((Vec3::ZERO, extent.as_vec3()));
+            let points: Vec<DVec3> = corners.collect();
+            let view = framed(&camera, &framing, &points, UVec2::splat(100)).unwrap();
+            let seen = in_picture(&view, &points, 1.0);
+            let most = seen.iter().map(|place| place.abs().max_element()).fold(0.0, f64::max);
+            assert!((most - 0.9).abs() < 1e-3, "{extent}");
+            ((view.eye - view.target).normalize().round(), view.up.round())
+        };
+        let level = DVec3::new(3.0, 0.2, 4.0);
+        assert_eq!(from(level, Flat::FrontBelow), (DVec3::Y, DVec3::NEG_Z));
+        assert_eq!(from(level, Flat::FrontOnTop), (DVec3::Y, DVec3::Z));
+        assert_eq!(from(level, Flat::Edge), (DVec3::Z, DVec3::Y));
+        assert_eq!(from(DVec3::new(0.0, 4.0, 3.0), Flat::FrontOnTop), (DVec3::NEG_X, DVec3::Y));
+        // From the front they are seen as they are, as is all that is no thinner than that, and what is a line.
+        for extent in [DVec3::new(3.0, 4.0, 0.0), DVec3::new(3.0, 0.4, 4.0), DVec3::new(9.0, 0.0, 0.0)] {
+            assert_eq!(from(extent, Flat::FrontBelow), (DVec3::Z, DVec3::Y));
+        }
     }
 }

@@ -61,6 +61,7 @@ pub(super) fn tell(
 }
 
 fn why_transparent(volume: &LoadedVolume, classified: &Classified, function: &TransferFunction) -> Problem {
+    let or_a_preset = if function.preset.is_some() { "" } else { ", or write `Preset(\"Object\")`" };
     let function = volume.function_in_force(function);
     let is_clear = function.points_in_force().iter().all(|point| point.2 == 0.0)
         && function.iso.iter().all(|iso| iso.absorption == 0.0);
@@ -73,7 +74,7 @@ fn why_transparent(volume: &LoadedVolume, classified: &Classified, function: &Tr
         Problem::note(format!("{nothing}: it has no finite sample"))
     } else if is_clear {
         Problem::note(format!("{nothing}: its transfer function is clear everywhere"))
-            .help("give a point an opacity above 0, or write `Preset(\"Object\")`")
+            .help(format!("give a point an opacity above 0{or_a_preset}"))
     } else if greatest < low || least > high {
         Problem::note(format!(
             "{nothing}: {values}, beside the domain of its transfer function, {low} to {high}"
@@ -81,7 +82,7 @@ fn why_transparent(volume: &LoadedVolume, classified: &Classified, function: &Tr
         .help(format!("write `domain: ({least:?}, {greatest:?})`, or leave it out"))
     } else {
         Problem::note(format!("{nothing}: {values}, where its transfer function is clear"))
-            .help("give a point at these values an opacity above 0, or write `Preset(\"Object\")`")
+            .help(format!("give a point at these values an opacity above 0{or_a_preset}"))
     }
 }
 

@@ -28,6 +28,8 @@ pub const TABLE: Table = Table {
     rows: &[
         ("eye.ViewCamera.frame.fill", "0.7", ""),
         ("eye.ViewCamera.frame.from", "(1.0, 0.1, 1.0)", ""),
+        ("eye.ViewCamera.frame.flat", "FrontOnTop", ""),
+        ("eye.ViewCamera.frame.flat", "FrontBelow", ""),
         ("eye.ViewCamera.frame", "None", ""),
         ("eye.ViewCamera.gamma", "2.0", ""),
         ("shard.Mesh.materials", "false", "upload_meshes 1 of 4 triangles"),
