@@ -33,7 +33,7 @@ pub struct Arguments {
     /// Sets of samples to average in each cell, else as many as the sheet is made for
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_536))]
     passes: Option<u32>,
-    /// Instead of the sheets, every file of the folder TYNDALL_DATA opened without a scene, beside F3D's defaults
+    /// Instead of the sheets, every file of the folder TYNDALL_DATA opened without a scene, beside the defaults of F3D and VTK
     #[arg(long, conflicts_with_all = ["only", "passes"])]
     first_sight: bool,
 }

@@ -1,4 +1,4 @@
-//! Every file of the folder of test data as the program opens it without a scene, beside what F3D makes of it.
+//! Every file of the folder of test data as the program opens it without a scene, beside what F3D and VTK make of it by themselves.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,9 +10,12 @@ use super::{FOLDER, compose, program};
 use crate::environment::Environment;
 use crate::process::Program;
 
-/// Files in a column of a sheet; each has a picture of ours and one of F3D's.
+/// Cells of a sheet; each file has a picture of ours and one of each peer's.
 const ROWS: usize = 6;
 const COLUMNS: usize = 6;
+
+/// Programs that are asked, and what `first_sight.py` calls them.
+const PEERS: [(&str, &str); 2] = [("F3D", "f3d"), ("VTK", "vtk")];
 
 /// Endings of what is opened.
 const ENDINGS: [&str; 16] = [
@@ -30,41 +33,34 @@ pub fn run((across, down): (u32, u32), environment: &Environment) -> Result<()> 
     files.sort();
     let folder = Path::new(FOLDER).join("first_sight");
     fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
-    let peer = peer(&folder).map_err(|error| eprintln!("without F3D: {error:#}")).ok();
+    let python = python(&folder).map_err(|error| eprintln!("without F3D and VTK: {error:#}")).ok();
     let mut cells = Vec::new();
     for (index, file) in files.iter().enumerate() {
         let name = file.strip_prefix(&data).unwrap_or(file).display().to_string();
-        let (ours, theirs) =
-            (folder.join(format!("{index:03}.png")), folder.join(format!("{index:03}_f3d.png")));
-        _ = fs::remove_file(&ours);
-        _ = fs::remove_file(&theirs);
         let size = format!("{across}x{down}");
-        let drawn = program()
-            .arguments(["render", "--size", &size, "-o"])
-            .arguments([text(&ours), text(file)])
-            .inside(environment)
-            .capture();
-        if let Err(error) = drawn {
-            eprintln!("{name}: {error:#}");
-        }
-        if let Some(peer) = &peer {
-            let arguments = [across.to_string(), down.to_string()];
-            let drawn = Program::new(&text(peer))
-                .arguments(["xtask/src/gallery/first_sight.py"])
-                .arguments(arguments)
-                .arguments([text(file), text(&theirs)])
-                .inside(environment)
-                .capture();
-            if let Err(error) = drawn {
-                eprintln!("{name}: F3D: {error:#}");
+        let picture = folder.join(format!("{index:03}.png"));
+        let ours =
+            program().arguments(["render", "--size", &size, "-o"]).arguments([text(&picture), text(file)]);
+        draw(&name, &picture, ours.inside(environment));
+        cells.push((name.clone(), read(&picture, across, down)));
+        for (title, peer) in PEERS {
+            let picture = folder.join(format!("{index:03}_{peer}.png"));
+            if let Some(python) = &python {
+                let arguments = ["xtask/src/gallery/first_sight.py", peer].map(str::to_owned);
+                let theirs = Program::new(&text(python)).arguments(arguments).arguments([
+                    across.to_string(),
+                    down.to_string(),
+                    text(file),
+                    text(&picture),
+                ]);
+                draw(&format!("{name}: {title}"), &picture, theirs.inside(environment));
             }
+            cells.push((format!("{title}: {name}"), read(&picture, across, down)));
         }
-        cells.push((name.clone(), read(&ours, across, down)));
-        cells.push((format!("F3D: {name}"), read(&theirs, across, down)));
     }
     for (number, cells) in cells.chunks(ROWS * COLUMNS).enumerate() {
         let path = Path::new(FOLDER).join(format!("first_sight_{number}.png"));
-        let title = "Files opened without a scene: ours, and F3D's defaults beside it";
+        let title = "Files opened without a scene: ours, and the defaults of F3D and VTK beside it";
         compose::sheet(title, cells, COLUMNS).save(&path).with_context(|| path.display().to_string())?;
         eprintln!("{}", path.display());
     }
@@ -99,12 +95,21 @@ fn read(path: &Path, across: u32, down: u32) -> RgbImage {
     }
 }
 
-/// A Python with F3D in it, made in the folder.
-fn peer(folder: &Path) -> Result<PathBuf> {
+/// Has a program draw a picture; what it cannot is told.
+fn draw(name: &str, picture: &Path, drawing: Program) {
+    _ = fs::remove_file(picture);
+    if let Err(error) = drawing.capture() {
+        eprintln!("{name}: {error:#}");
+    }
+}
+
+/// A Python with F3D and VTK in it, made in the folder.
+fn python(folder: &Path) -> Result<PathBuf> {
     let python = folder.join(if cfg!(windows) { "venv/Scripts/python.exe" } else { "venv/bin/python" });
     if !python.is_file() {
         Program::new("python3").arguments(["-m", "venv"]).arguments([text(&folder.join("venv"))]).run()?;
-        Program::new(&text(&python)).arguments(["-m", "pip", "install", "--quiet", "f3d"]).run()?;
+        let wheels = ["-m", "pip", "install", "--quiet", "f3d", "vtk"];
+        Program::new(&text(&python)).arguments(wheels).run()?;
     }
     Ok(python)
 }
