@@ -292,8 +292,12 @@ struct Furnace {
     lighting: String,
 }
 
-/// Directions all around, each standing for the same solid angle.
+/// Directions all around, each standing for the same solid angle; and so many where these say that more comes back than was sent.
 const VIEWS: u32 = 24;
+const MANY_VIEWS: u32 = 240;
+
+/// More than this is more than was sent.
+const EXCESS: f64 = 0.003;
 
 impl Furnace {
     fn half(&self) -> DVec3 {
@@ -331,7 +335,7 @@ impl Furnace {
     }
 
     /// Scattered flux that leaves the box, as a share of all that it receives.
-    fn scattered(&self, studio: &mut Studio) -> f64 {
+    fn scattered(&self, studio: &mut Studio, views: u32) -> f64 {
         const PIXELS: u32 = 24;
         let [x, y, z] = self.size;
         studio.volume("furnace.raw", self.size.map(|side| side as usize), |_| 0.5);
@@ -340,9 +344,9 @@ impl Furnace {
         let DVec3 { x: lx, y: ly, z: lz } = self.light;
         let height = 2.02 * self.half().length();
         let mut flux = 0.0;
-        for view in 0..VIEWS {
+        for view in 0..views {
             // Fibonacci's sphere, turned out of symmetry with the box.
-            let up = 1.0 - (2.0 * f64::from(view) + 1.0) / f64::from(VIEWS);
+            let up = 1.0 - (2.0 * f64::from(view) + 1.0) / f64::from(views);
             let around = 2.399_963_229_728_653 * f64::from(view) + 0.3;
             let across = (1.0 - up * up).sqrt();
             let eye = DVec3::new(across * around.cos(), up, across * around.sin()) * 3.0 * height;
@@ -361,15 +365,14 @@ impl Furnace {
                 PIXELS,
             );
             let mean = seen.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>() / f64::from(PIXELS * PIXELS);
-            flux += mean * height * height * 4.0 * PI / f64::from(VIEWS);
+            flux += mean * height * height * 4.0 * PI / f64::from(views);
         }
         flux / self.projected_area(self.light)
     }
 }
 
-/// White cubes and slabs, thin and thick, return what they receive and no more: half a percent is what 24 views are off by (with 240 of them
-/// the worst is 0.06 % above). Where light goes on towards
-/// the eye, what spreads over the sides of the box is lost.
+/// White cubes and slabs, thin and thick, return what they receive and no more, to 0.3 %. Where light goes on towards the eye, what spreads over the sides
+/// of the box is lost.
 #[needs(gpu)]
 #[test]
 fn white_media_never_return_more_than_they_receive() {
@@ -383,10 +386,15 @@ fn white_media_never_return_more_than_they_receive() {
                     let lighting = format!("LightVolume(g: {g:?}, towards_eye: {towards_eye})");
                     let furnace =
                         Furnace { size, sigma, light: light.normalize(), lighting: lighting.clone() };
-                    let scattered = furnace.scattered(&mut studio);
                     // What is scattered into a peak goes on with the light.
-                    let peak = Furnace { sigma: sigma * Peak::new(g).extinction(1.0), ..furnace };
-                    let excess = scattered + peak.straight() - 1.0;
+                    let peak = sigma * Peak::new(g).extinction(1.0);
+                    let straight = Furnace { sigma: peak, lighting: String::new(), ..furnace }.straight();
+                    let mut scattered = furnace.scattered(&mut studio, VIEWS);
+                    if scattered + straight - 1.0 >= EXCESS {
+                        // Few views alone are off by half a percent.
+                        scattered = furnace.scattered(&mut studio, MANY_VIEWS);
+                    }
+                    let excess = scattered + straight - 1.0;
                     let name =
                         format!("{size:?} sigma {sigma} {lighting} in {light}: {scattered:.4} scattered");
                     eprintln!("{name}: {:+.1} %", 100.0 * excess);
@@ -400,7 +408,7 @@ fn white_media_never_return_more_than_they_receive() {
         let of_kind: Vec<_> = all.iter().filter(|case| case.0 == towards_eye).collect();
         let [least, .., worst] = of_kind[..] else { panic!("no cases") };
         eprintln!("from {least:?} to {worst:?}");
-        assert!(worst.1 < 0.006, "{worst:?}");
+        assert!(worst.1 < EXCESS, "{worst:?}");
         assert!(least.1 > floor, "{least:?}");
     }
 }

@@ -67,8 +67,7 @@ fn samples_are_counted_and_a_volume_is_held_once_in_a_narrow_format() {
     studio.app.world_mut().resource_mut::<tyndall::report::Report>().measure = true;
     let scene = "(entities: {
         \"eye\": ( ViewCamera: (eye: (0.0, 0.0, 40.0), projection: Orthographic(height: 8.0)) ),
-        \"v\": ( Volume: Raw(path: \"u8.raw\", size: (16, 16, 16)), RayCast: (early_termination: 1.0),
-            TransferFunction: (domain: (0.0, 255.0)) ) })";
+        \"v\": ( Volume: Raw(path: \"u8.raw\", size: (16, 16, 16)), RayCast: (early_termination: 1.0) ) })";
     studio.radiance(scene, 4, 4);
     let report = studio.report();
     // 16 rays of 16 voxels each.

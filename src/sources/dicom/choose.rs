@@ -15,6 +15,9 @@ const MAX_NAMED: usize = 6;
 /// Letters of a description that a note repeats.
 const MAX_DESCRIPTION: usize = 60;
 
+/// Letters of a UID or number that a message repeats; neither may have more (DICOM PS3.5, table 6.2-1).
+const MAX_UID: usize = 64;
+
 /// Images that make one volume.
 type Group = Vec<File>;
 
@@ -121,6 +124,7 @@ fn name(groups: &[Group], with_number: &HashMap<String, usize>) -> String {
     let number = &header.series_number;
     let is_unique = !number.is_empty() && with_number.get(number) == Some(&1);
     let chooses = if is_unique { number } else { &header.series };
+    let chooses: String = chooses.chars().take(MAX_UID).collect();
     let description: String =
         header.description.chars().filter(|letter| !letter.is_control()).take(MAX_DESCRIPTION).collect();
     let description = if description.is_empty() { "no name" } else { &description };

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use tiff::{
     ColorType,
-    decoder::ifd::Value,
-    tags::{ByteOrder, Tag},
+    decoder::ifd::{Entry, Value},
+    tags::{ByteOrder, Tag, Type},
 };
 
 use super::{
@@ -234,8 +234,11 @@ fn channels(
     }
 }
 
+/// The numbers of a tag. Of text in their place the decoder takes as much memory as the file says, or prints what it thinks of it.
 fn tag(decoder: &mut Pixels, name: Tag) -> Option<Value> {
-    decoder.find_tag(name).ok().flatten()
+    let is_text = |entry: Entry| entry.field_type() == Type::ASCII;
+    let holds_numbers = decoder.image_ifd().find_entry(name).is_some_and(|entry| !is_text(entry));
+    holds_numbers.then(|| decoder.find_tag(name).ok().flatten()).flatten()
 }
 
 /// The first of several values.

@@ -50,6 +50,10 @@ fn nested_folders_are_looked_through_and_a_series_can_be_chosen() {
     let none = read_folder(&folder.path(""), &choice("9")).unwrap_err().to_string();
     assert!(none.contains("no series `9`; there are `T1 AX` of 4"), "{none}");
     assert!(read_file(&folder.path("DICOM/PAT0/STU1/SER0/I0"), &choice("9")).is_err());
+    // Damaged ones are not repeated at length.
+    put(&folder, "long/I0", &named(0.0, &"1".repeat(4000), "", &"d".repeat(4000), 60));
+    let none = read_folder(&folder.path("long"), &choice("9")).unwrap_err().to_string();
+    assert!(none.len() < 500, "{none}");
 }
 
 #[cfg(unix)]
