@@ -150,12 +150,13 @@ pub(crate) fn run(
             continue;
         };
         let scene_from_texture = scene_from_texture(loaded, placement, &settings);
+        let cells = Cells::of(&gpu, (loaded, classified), resolution, scene_from_texture);
         let mut own = LightVolumes::default();
         let all = kept.as_mut().map_or(&mut own, |kept| kept.bypass_change_detection());
         let mut old = std::mem::take(&mut all.0);
         for (light, to_light) in &lights {
             let volume = (loaded, classified, texture);
-            let recipe = recipe(&gpu, volume, resolution, *to_light, scene_from_texture);
+            let recipe = recipe(volume, cells, *to_light, scene_from_texture);
             let found =
                 old.iter().position(|volume| volume.light == *light).map(|index| old.swap_remove(index));
             if let Some(found) = found.filter(|found| found.recipe == recipe) {
@@ -198,14 +199,12 @@ pub(crate) fn scene_from_texture(
 
 /// What the light volume of a volume is made from, for a light in a direction.
 pub(crate) fn recipe(
-    gpu: &Gpu,
-    (loaded, classified, texture): (&LoadedVolume, &Classified, &VolumeTexture),
-    resolution: f32,
+    (_, classified, texture): (&LoadedVolume, &Classified, &VolumeTexture),
+    Cells { count, near, .. }: Cells,
     to_light: DVec3,
     scene_from_texture: DAffine3,
 ) -> Recipe {
     let direction = scene_from_texture.inverse().transform_vector3(-to_light);
-    let Cells { count, near, .. } = Cells::of(gpu, (loaded, classified), resolution, scene_from_texture);
     let sweep = Sweep::new(count, direction);
     let slice = scene_from_texture.transform_vector3(sweep.step()).length();
     Recipe { sweep, slice, near, volume: texture.view.clone(), classified: classified.versions.extinction }

@@ -7,6 +7,7 @@ use super::classify::Classified;
 use super::light_budget::KeptLights;
 use super::light_cells::LightCells;
 use super::light_network::LightNetwork;
+use super::light_volume::cells::Cells;
 use super::light_volume::{self, LightSweeper, LightVolume, lighting_in_force, lookup, scene_from_texture};
 use super::scattered_light::{self, Scatterer, Source};
 use super::upload::VolumeTexture;
@@ -108,9 +109,10 @@ pub(crate) fn run(
             continue;
         };
         let scene_from_texture = scene_from_texture(volume.0, placement, &settings);
+        let fine = Cells::of(&gpu, (volume.0, volume.1), resolution, scene_from_texture);
         let shadow_of = |light| shadows.and_then(|shadows| shadows.of(light));
         let share = |(light, to_light): &(Entity, glam::DVec3)| {
-            let sweep = light_volume::recipe(&gpu, volume, resolution, *to_light, scene_from_texture);
+            let sweep = light_volume::recipe(volume, fine, *to_light, scene_from_texture);
             Share {
                 source: network.map(|_| Source::new(&lighting, sweep.step(), scene_from_texture)),
                 sweep,
